@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "base/name_pattern.h"
+#include "base/program_lock.h"
 #include "component/joint_roles.h"
 
 namespace freeplay {
@@ -15,10 +16,12 @@ namespace {
 
 /// The same text for the life of the program: units of columns are views.
 const char* kept_unit(const std::string& unit) {
-  static std::mutex lock;
-  static std::set<std::string> units;
-  const std::scoped_lock guard(lock);
-  return units.insert(unit).first->c_str();
+  struct Units {
+    std::set<std::string> texts;
+  };
+  static Units units;
+  const std::lock_guard lock(program_lock<Units>());
+  return units.texts.insert(unit).first->c_str();
 }
 
 }  // namespace

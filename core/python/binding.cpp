@@ -8,14 +8,15 @@
 namespace freeplay {
 
 bool Pulse::operator()(double t, long steps) {
-  const py::gil_scoped_acquire held;
+  std::optional<py::gil_scoped_acquire> held;
+  while_interpreter_lives([&] { held.emplace(); });
   if (PyErr_CheckSignals() != 0) {
     raised_.emplace();
     return false;
   }
   if (progress_.is_none()) return true;
   try {
-    progress_(t, steps);
+    called(progress_, py::make_tuple(t, steps));
   } catch (py::error_already_set& error) {
     raised_ = std::move(error);
     return false;
@@ -30,8 +31,16 @@ py::object Pulse::raised() {
   return value;
 }
 
+py::object called(const py::object& function, const py::tuple& arguments) {
+  PyObject* const answer =
+      while_interpreter_lives([&] { return PyObject_CallObject(function.ptr(), arguments.ptr()); });
+  if (answer == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::object>(answer);
+}
+
 py::object python_of(const Json& json) {
-  return py::module_::import("json").attr("loads")(json.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return called(py::module_::import("json").attr("loads"),
+                py::make_tuple(json.dump(-1, ' ', false, Json::error_handler_t::replace)));
 }
 
 py::array numbers(const double* data, std::vector<py::ssize_t> shape, std::vector<py::ssize_t> strides,

@@ -2,10 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include <cxxabi.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <unistd.h>
 
 #include "base/json_text.h"
 #include "python/column_block.h"
@@ -17,10 +20,32 @@ namespace freeplay {
 
 namespace py = pybind11;
 
+/// What waits for the interpreter. A thread that it does not wait for at its own end stays here then, until the process
+/// ends: the interpreter would take it down through functions of the core, which end the process by that, or touch what
+/// is no more.
+template <class Call>
+auto while_interpreter_lives(const Call& call) {
+  try {
+    return call();
+  } catch (const ::abi::__forced_unwind&) {
+    for (;;) ::pause();
+  }
+}
+
 /// While the core works: other threads of Python go on, and numbers are those of the command line.
-struct [[gnu::visibility("hidden")]] Away {
-  py::gil_scoped_release released;
-  DefaultArithmetic arithmetic;
+class [[gnu::visibility("hidden")]] Away {
+ public:
+  Away() : thread_(PyEval_SaveThread()), arithmetic_(std::in_place) {}
+  ~Away() {
+    arithmetic_.reset();
+    while_interpreter_lives([&] { PyEval_RestoreThread(thread_); });
+  }
+  Away(const Away&) = delete;
+  Away& operator=(const Away&) = delete;
+
+ private:
+  PyThreadState* thread_;
+  std::optional<DefaultArithmetic> arithmetic_;
 };
 
 /// Signals and the caller's function, between steps. What these raise waits until the core has come back.
@@ -36,6 +61,9 @@ class [[gnu::visibility("hidden")]] Pulse {
   py::object progress_;
   std::optional<py::error_already_set> raised_;
 };
+
+/// What a function of Python gives.
+py::object called(const py::object& function, const py::tuple& arguments);
 
 py::object python_of(const Json& json);
 

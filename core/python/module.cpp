@@ -36,8 +36,8 @@ using Opened = std::shared_ptr<OpenedModel>;
 
 /// Raises the class of the exit code, with messages and text.
 void raise(const Refusal& refusal) {
-  const py::object error = py::module_::import("freeplay._errors")
-                               .attr("refused")(refusal.exit_code(), python_of(refusal.messages()), refusal.text());
+  const py::object error = called(py::module_::import("freeplay._errors").attr("refused"),
+                                  py::make_tuple(refusal.exit_code(), python_of(refusal.messages()), refusal.text()));
   PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error.ptr())), error.ptr());
 }
 

@@ -14,13 +14,9 @@
 namespace freeplay {
 namespace {
 
-/// One at a time: the log handler of the library that reads URDF is global.
-std::mutex reading;
-
 LoadedModel read(const OpenRequest& request, const BuildOptions& build, std::vector<std::string>& remarks) {
   LoadOptions options{request.load};
   options.warn = options.note = [&](const std::string& text) { remarks.push_back(text); };
-  const std::lock_guard lock(reading);
   return request.text ? load_text(*request.text, request.file, build, options)
                       : load_model(request.file, build, options);
 }
@@ -36,6 +32,8 @@ LoadedModel read_whole(const OpenRequest& request, std::vector<std::string>& rem
 
 OpenedModel::OpenedModel(OpenRequest request)
     : request_(std::move(request)), loaded_(read_whole(request_, remarks_)), channels_(*loaded_.model) {}
+
+OpenedModel::~OpenedModel() { delete assembled_.load(); }
 
 Json OpenedModel::check(const OpenRequest& request) {
   std::vector<std::string> remarks;
@@ -94,12 +92,12 @@ void OpenedModel::refuse(const Error& error) const {
 }
 
 const AssembledModel& OpenedModel::assembled() const {
-  const std::lock_guard lock(assembling_);
-  if (!assembled_) {
-    Diagnostics diagnostics;
-    assembled_ = assemble(diagnostics);
-  }
-  return *assembled_;
+  if (const AssembledModel* known = assembled_) return *known;
+  Diagnostics diagnostics;
+  std::unique_ptr<const AssembledModel> found = assemble(diagnostics);
+  const AssembledModel* first = nullptr;
+  if (assembled_.compare_exchange_strong(first, found.get())) return *found.release();
+  return *first;  // another thread was quicker
 }
 
 Json OpenedModel::facts() const {

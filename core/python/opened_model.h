@@ -1,8 +1,8 @@
 // OpenedModel: a model that a script holds. Nothing of it changes, so that any thread may use it.
 #pragma once
 
+#include <atomic>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +28,9 @@ class OpenedModel {
  public:
   /// Throws Refusal with the messages of the file, Error{usage} for what is asked for.
   explicit OpenedModel(OpenRequest request);
+  OpenedModel(const OpenedModel&) = delete;
+  OpenedModel& operator=(const OpenedModel&) = delete;
+  ~OpenedModel();
   /// All messages of a file, of its assembly too where there is a model.
   static Json check(const OpenRequest& request);
 
@@ -64,7 +67,7 @@ class OpenedModel {
   std::string svg() const;
 
  private:
-  /// Assembled when it is first asked for.
+  /// Assembled when it is first asked for. Without a lock, which a child of a fork could find held by nobody.
   const AssembledModel& assembled() const;
   OpenRequest same_text() const;
 
@@ -72,8 +75,7 @@ class OpenedModel {
   std::vector<std::string> remarks_;
   LoadedModel loaded_;
   Channels channels_;
-  mutable std::mutex assembling_;
-  mutable std::unique_ptr<AssembledModel> assembled_;
+  mutable std::atomic<const AssembledModel*> assembled_ = nullptr;
 };
 
 }  // namespace freeplay

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <exception>
 #include <map>
+#include <mutex>
 #include <string_view>
 
 #include <console_bridge/console.h>
 #include <fmt/format.h>
 #include <urdf_parser/urdf_parser.h>
 
+#include "base/program_lock.h"
 #include "base/text.h"
 
 namespace freeplay::urdf {
@@ -133,6 +135,7 @@ struct Answer {
 };
 
 Answer ask(RobotText& robot) {
+  const std::lock_guard lock(program_lock<Listener>());  // who listens to urdfdom is the program's
   Listener listener;
   std::string why = "no reason given";
   try {
