@@ -65,6 +65,7 @@ LIBRARIES = {
     "hdf5.h": {"results"},
     "matio.h": {"results"},
     "zlib.h": {"study"},
+    "cxxabi.h": {"python"},
     "dlfcn.h": {"component", "python"},
     "elf.h": {"component"},
     "nlohmann": {"base"},
