@@ -105,6 +105,7 @@ except freeplay.Interrupted as error:
         self.assertRaises(freeplay.ModelError, two, [-1.0])
         for x in ([1e-4, 1e-4], 1e-4, [[1e-4]]):
             self.assertRaises(freeplay.UsageError, two, x)
+        self.assertRaises(freeplay.UsageError, freeplay.Function, SLIDER, ["c", "c"], REDUCE["peak"])  # the first number would count for nothing
 
 
 if __name__ == "__main__":

@@ -183,6 +183,17 @@ class Models(InFolder):
             self.assertTrue(caught.exception.exit_code == 2 and caught.exception.messages)
         self.assertRaises(TypeError, freeplay.load, SLIDER, end=[1])
         self.assertRaises(TypeError, freeplay.load, 3)
+        result, planar = freeplay.run(SLIDER, end="0.1 ms"), freeplay.load(str(ROOT / "mechanisms/3-rrr.yaml"))
+        for call in (lambda: result.select(3), lambda: freeplay.describe(3), lambda: freeplay.types(0), lambda: freeplay.schema(None),
+                     lambda: planar.ik(pose=np.zeros((2, 1, 3)))):
+            with self.assertRaises(TypeError) as wrong:
+                call()
+            self.assertRegex(str(wrong.exception), "needed|not")
+            self.assertNotIn("incompatible", str(wrong.exception))
+        for options in ({"tolerance": -1}, {"absolute": -1e-9}):  # as of the command
+            with self.assertRaises(freeplay.UsageError) as negative:
+                freeplay.compare(result, result, **options)
+            self.assertIn("must not be negative", str(negative.exception))
         self.assertRaises(freeplay.PluginError, freeplay.load, SLIDER, plugins=["nope"])
         with self.assertRaises(freeplay.UnknownName) as name:
             freeplay.run(SLIDER, end="0.1 ms")["body.slider.xx"]

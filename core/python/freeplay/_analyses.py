@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._errors import Error, Interrupted, usage
-from ._source import count_of, quantity, renamed
+from ._source import count_of, quantity, renamed, text
 from ._table import Table
 
 if TYPE_CHECKING:
@@ -60,6 +60,8 @@ def pose_words(value: Any) -> list[str]:
         return [",".join(quantity("pose", number) for number in poses)]
     words = []
     for pose in poses:
+        if not isinstance(pose, (Mapping, str)) and np.ndim(pose) != 1:
+            raise TypeError("pose: one pose, a list of poses or an array (N, 3) or (N, 6) is needed")
         words += pose_words(pose)
     return words
 
@@ -95,10 +97,8 @@ def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
             words[name] = quantity(name, value)
         elif name in ("samples", "seed"):
             words[name] = str(count_of(name, value, 0))
-        elif isinstance(value, str):
-            words[name] = value
         else:
-            raise TypeError(f"{name}: a text is needed, not {type(value).__name__}")
+            words[name] = text(name, value)
         if name in ("grid", "pose", "input") and not words[name]:
             raise usage(f"{name}: at least one is needed")
     return words

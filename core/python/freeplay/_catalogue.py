@@ -4,21 +4,22 @@ from __future__ import annotations
 from typing import Any
 
 from . import _core
+from ._source import text
 
 
 def types(kind: str | None = None) -> list[dict[str, Any]]:
     """Types of joints, laws and integrators, as `freeplay list --json`. kind: joints, laws, forces, integrators or plugins."""
-    return _core.types(kind or "")
+    return _core.types("" if kind is None else text("kind", kind))
 
 
 def describe(name: str) -> Any:
     """One type with parameters and channels, as `freeplay describe --json`. name: of the type. Raises UsageError."""
-    return _core.describe(name)
+    return _core.describe(text("name", name))
 
 
 def schema(kind: str = "model") -> dict[str, Any]:
     """The JSON Schema of the model file, as `freeplay schema`. kind: model, study or summary."""
-    return _core.schema_of(kind)
+    return _core.schema_of(text("kind", kind))
 
 
 def info() -> dict[str, Any]:

@@ -6,6 +6,7 @@ import os
 from typing import Iterable, Union
 
 from . import _core
+from ._errors import usage
 from ._result import Result
 from ._simulation import number
 from ._source import Quantity, names as names_of
@@ -26,13 +27,21 @@ def compare(a: Compared, b: Compared, *, tolerance: float = 1e-6, absolute: floa
 
     with tempfile.TemporaryDirectory() as folder:
         paths = [path_of(one, os.path.join(folder, name)) for one, name in ((a, "a"), (b, "b"))]
-        found = _core.compare(paths[0], paths[1], number("tolerance", tolerance, "1"), number("absolute", absolute, "1"), names_of(channels),
+        found = _core.compare(paths[0], paths[1], part("tolerance", tolerance), part("absolute", absolute), names_of(channels),
                               -math.inf if start is None else number("start", start, "s"),
                               math.inf if until is None else number("until", until, "s"))
     rows = found["rows"]
     columns = {name: [row[i] for row in rows] for i, name in enumerate(COLUMNS)}
     units = {name: "s" if name == "at_time" else "1" for name in COLUMNS}
     return Table("compare", columns, units, {"agree": found["agree"], "rows": found["compared"]}, found["notes"])
+
+
+def part(name: str, value: float) -> float:
+    """What may differ."""
+    found = number(name, value, "1")
+    if found < 0:
+        raise usage(f"bad value '{value}' of {name}: it must not be negative", message_id="bad-value")
+    return found
 
 
 def path_of(result: Compared, folder: str) -> str:

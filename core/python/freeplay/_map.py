@@ -363,6 +363,8 @@ class Function:
         if isinstance(inputs, str) or not all(isinstance(name, str) for name in inputs):
             raise TypeError("inputs: a list of names is needed")
         self.inputs: tuple[str, ...] = tuple(inputs)
+        if len(set(self.inputs)) < len(self.inputs):
+            raise usage("inputs: a name stands there twice", message_id="duplicate-name")
         self.alone: bool = not isinstance(outputs, Mapping) or any(not isinstance(entry, (Mapping, tuple, list)) for entry in outputs.values())
         self.outputs: dict[str, Any] = {ALONE: outputs} if self.alone else dict(outputs)
         self._model = model_of(source, options_of_load)

@@ -133,7 +133,7 @@ class Result:
 
     def select(self, *patterns: str) -> dict[str, Array]:
         """Columns by name that fit one of the patterns, in which `*` stands for any run of characters: views."""
-        return {name: self[name] for name in self._chosen(patterns)}
+        return {name: self[name] for name in self._chosen(names_of(patterns))}
 
     def to_pandas(self, channels: str | Iterable[str] = "*") -> Any:
         """A pandas DataFrame of the channels that fit, index `time` [s]; attrs["units"] has their units."""

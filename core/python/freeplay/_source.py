@@ -22,6 +22,13 @@ def whole(name: str, text: str) -> str:
     return text
 
 
+def text(name: str, value: Any) -> str:
+    """A text and nothing else."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name}: a text is needed, not {type(value).__name__}")
+    return whole(name, value)
+
+
 def quantity(name: str, value: Any) -> str:
     """A number in SI, or a text with a unit, as the command line takes it. Raises TypeError for anything else."""
     if isinstance(value, str):
@@ -112,11 +119,8 @@ def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
         if options.get(name) is not None:
             built[name] = filled(name, quantity(name, options[name]))
     for name in ("integrator", "format"):
-        value = options.get(name)
-        if value is not None:
-            if not isinstance(value, str):
-                raise TypeError(f"{name}: a text is needed, not {type(value).__name__}")
-            built[name] = filled(name, value)
+        if options.get(name) is not None:
+            built[name] = filled(name, text(name, options[name]))
     for name in ("ideal", "plugins", "channels"):
         if options.get(name) is not None:
             built[name] = words(name, options[name])
