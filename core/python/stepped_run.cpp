@@ -8,7 +8,7 @@ SteppedRun::SteppedRun(const std::shared_ptr<const OpenedModel>& model, const Ru
     : run_(model, request, std::move(tick)), row_(run_.columns()) {}
 
 void SteppedRun::require_going() {
-  if (ended_) throw Error(Error::Category::usage, "usage", "the simulation is over: it " + ended_->status);
+  if (ended_) throw Error(Error::Category::usage, "usage", "the simulation is over (" + ended_->status + ")");
   run_.leave_files_of_others();
 }
 

@@ -190,11 +190,15 @@ class Models(InFolder):
                 call()
             self.assertRegex(str(wrong.exception), "needed|not")
             self.assertNotIn("incompatible", str(wrong.exception))
+        for call in (lambda: result.save("saved", force="no"), lambda: planar.ik(pose=[0, 0, 0], force="no"), lambda: freeplay.resume("saved", report=1)):
+            self.assertRaisesRegex(TypeError, "True or False", call)
         for options in ({"tolerance": -1}, {"absolute": -1e-9}):  # as of the command
             with self.assertRaises(freeplay.UsageError) as negative:
                 freeplay.compare(result, result, **options)
             self.assertIn("must not be negative", str(negative.exception))
         self.assertRaises(freeplay.PluginError, freeplay.load, SLIDER, plugins=["nope"])
+        for word in ("force", "strict", "verify", "twin", "report", "profile"):
+            self.assertRaisesRegex(TypeError, f"{word}: True or False", freeplay.run, SLIDER, end="0.1 ms", **{word: "no"})
         with self.assertRaises(freeplay.UnknownName) as name:
             freeplay.run(SLIDER, end="0.1 ms")["body.slider.xx"]
         self.assertIsInstance(name.exception, KeyError)

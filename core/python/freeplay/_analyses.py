@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._errors import Error, Interrupted, usage
-from ._source import count_of, quantity, renamed, text
+from ._source import count_of, flag, quantity, renamed, text
 from ._table import Table
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def analysis_words(kind: str, options: Mapping[str, Any]) -> dict[str, Any]:
         if value is None or value is False:
             continue
         if name in ("sensitivity", "branches"):
-            words[name] = bool(value)
+            words[name] = flag(name, value)
         elif name == "grid" and not isinstance(value, Mapping):
             raise TypeError("grid: a mapping of axes to (from, to, count) is needed, not " + type(value).__name__)
         elif name == "grid":

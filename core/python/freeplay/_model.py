@@ -9,7 +9,7 @@ from . import _core, _html
 from ._analyses import analyse
 from ._errors import Error, Message, ModelWarning, message_of, usage
 from ._result import Result, raise_failure, result_of
-from ._source import Quantity, Source, build_options, count_of, filled, kept_options, of_text, place_of, quantity, remark, renamed
+from ._source import Quantity, Source, build_options, count_of, filled, flag, kept_options, of_text, place_of, quantity, remark, renamed
 from ._simulation import Simulation
 from ._table import Table
 
@@ -262,9 +262,9 @@ def call_of(model: Model, options: Mapping[str, Any], name: str) -> Call:
     changes = {name: value for name, value in options.items() if name in (*OF_LOAD, *OF_RUN) and value is not None}
     if changes:
         model = model.replace(**changes)
-    profiled = bool(options.get("profile", False))
-    words: dict[str, Any] = {"call": name, "profile": profiled, "force": bool(options.get("force", False))}
-    words.update((flag, bool(options.get(flag, False))) for flag in ("verify", "twin", "report"))
+    profiled = flag("profile", options.get("profile"))
+    words: dict[str, Any] = {"call": name, "profile": profiled, "force": flag("force", options.get("force"))}
+    words.update((name, flag(name, options.get(name))) for name in ("verify", "twin", "report"))
     words.update((count, str(count_of(count, options[count], least))) for count, least in (("repeat", 2), ("seed", 0))
                  if options.get(count) is not None)
     if options.get("checkpoint") is not None:

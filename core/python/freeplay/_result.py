@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _core, _html
 from ._errors import Error, Interrupted, NumericalError, Message, PluginError, ResultError, unknown_name, usage
-from ._source import names as names_of
+from ._source import flag, names as names_of
 
 if TYPE_CHECKING:
     from ._model import Model
@@ -168,7 +168,7 @@ class Result:
         if self._kept is None:
             raise usage("save(): a result that came from another process has its numbers alone: save it there")
         path = os.fspath(out)
-        _core.save(self._kept, path, force, format)
+        _core.save(self._kept, path, flag("force", force), format)
         return pathlib.Path(path)
 
     def report(self, path: str | os.PathLike[str] | None = None) -> pathlib.Path:

@@ -7,7 +7,7 @@ from typing import Any
 from . import _core
 from ._model import Progress, progress_of, warn
 from ._result import Result, open, raise_failure
-from ._source import Quantity, filled, quantity
+from ._source import Quantity, filled, flag, quantity
 
 
 def resume(path: str | os.PathLike[str], *, end: Quantity | None = None, checkpoint: Quantity | None = None, report: bool = False,
@@ -21,12 +21,12 @@ def resume(path: str | os.PathLike[str], *, end: Quantity | None = None, checkpo
     checkpoint, as simulation() leaves none.
     """
     ends: list[float] = []
-    words: dict[str, Any] = {"call": "freeplay.resume()", "profile": bool(profile), "report": bool(report)}
+    words: dict[str, Any] = {"call": "freeplay.resume()", "profile": flag("profile", profile), "report": flag("report", report)}
     given = {name: filled(name, quantity(name, value)) for name, value in (("end", end), ("checkpoint", checkpoint)) if value is not None}
     if "checkpoint" in given:
         words["checkpoint"] = given["checkpoint"]
     on_progress = progress_of(progress, ends)
-    kept, raised = _core.resume(os.fspath(path), given.get("end", ""), bool(allow_plugins), words, ends.append, on_progress)
+    kept, raised = _core.resume(os.fspath(path), given.get("end", ""), flag("allow_plugins", allow_plugins), words, ends.append, on_progress)
     result = open(path)
     if kept is None:
         return result

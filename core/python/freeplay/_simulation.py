@@ -167,7 +167,7 @@ class Simulation:
         result, ended = self.result(), self._core.ended()
         if self._told:
             if self._cut:
-                raise usage(f"the simulation is over: it {self.status}")
+                raise usage(f"the simulation is over ({self.status})")
             return self.time
         self._told, self._cut = True, self._cut or self.status in ("failed", "interrupted")
         warn(result.warnings, 4)

@@ -29,6 +29,13 @@ def text(name: str, value: Any) -> str:
     return whole(name, value)
 
 
+def flag(name: str, value: Any) -> bool:
+    """True or False; None is False. A text such as 'no' would count as True."""
+    if value is None or isinstance(value, bool) or type(value).__name__ == "bool_":
+        return bool(value)
+    raise TypeError(f"{name}: True or False is needed, not {type(value).__name__}")
+
+
 def quantity(name: str, value: Any) -> str:
     """A number in SI, or a text with a unit, as the command line takes it. Raises TypeError for anything else."""
     if isinstance(value, str):
@@ -125,7 +132,7 @@ def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
         if options.get(name) is not None:
             built[name] = words(name, options[name])
     for name in ("strict", "allow_plugins"):
-        built[name] = bool(options.get(name, False))
+        built[name] = flag(name, options.get(name))
     return built
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _html
 from ._errors import Message, ResultError, UsageError, unknown_name, usage
+from ._source import flag
 
 Column = np.ndarray[Any, np.dtype[Any]]
 
@@ -54,7 +55,7 @@ class Table:
         self.axes: dict[str, Column] = dict(axes or {})
         self._cells = {name: column_of(cells) for name, cells in columns.items()}
         self._csv = csv
-        self._force = force
+        self._force = flag("force", force)
         self._draw = draw
         self._svg: str | None = None
 
