@@ -277,7 +277,7 @@ PYBIND11_MODULE(_core, module) {
       .def("start", answer(&OpenedModel::start))
       .def("tree", answer(&OpenedModel::tree))
       .def("svg", answer(&OpenedModel::svg));
-  py::class_<StoredResult, std::shared_ptr<StoredResult>>(module, "StoredResult");
+  const py::class_<StoredResult, std::shared_ptr<StoredResult>> stored(module, "StoredResult");
   bind_runs(module);
   bind_maps(module);
   module.def("open_model", &open_model);
