@@ -7,6 +7,8 @@
 #include "base/error.h"
 #include "base/index.h"
 #include "linear/singular_values.h"
+#include "model/gear_teeth.h"
+#include "system/tooth_forces.h"
 
 namespace freeplay {
 namespace {
@@ -101,6 +103,12 @@ InverseDynamics::Found InverseDynamics::solve(double t, const Posture& posture, 
   out.wrench.clear();
   for (int j = 0; j < static_cast<int>(mechanism.model().joints.size()); ++j) {
     system.constraints().reaction(j, e, {lambda.data(), at(nc)}, out.wrench.emplace_back().data());
+  }
+  for (const Gear& gear : mechanism.model().gears) {
+    if (!has_teeth(mechanism.model().joints[at(gear.joint)])) continue;
+    for (const ToothWrench& one : tooth_wrenches(system, gear, e, {lambda.data(), at(nc)})) {
+      one.add_to(out.wrench[at(one.joint)].data(), 5);
+    }
   }
   return Found::yes;
 }

@@ -9,6 +9,7 @@
 
 #include "cli/text_table.h"
 #include "cli/window_lines.h"
+#include "model/gear_teeth.h"
 #include "results/figure_text.h"
 #include "results/play_noise.h"
 #include "run/figure_noise.h"
@@ -177,7 +178,7 @@ std::string twin_line(const Json& twin) {
   return text + "\n";
 }
 
-/// A gear between turns passes a torque, one to a slide a force.
+/// A gear between turns passes a torque, one to a slide a force; teeth without play press with a force, too.
 void add_gears(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "gear"), "max |force|", "max |torque|"});
   const Figures figure{record};
@@ -186,11 +187,13 @@ void add_gears(const RunRecord& record, TextTable& table) {
     const JointElement& second = record.model.joints[static_cast<std::size_t>(gear.second)];
     const bool turns = second.ideal_layout.coordinate == Coordinate::angle;
     const JointStatistics seen = record.statistics.joint(gear.joint);
-    const std::string& name = record.model.joints[static_cast<std::size_t>(gear.joint)].name;
+    const JointElement& element = record.model.joints[static_cast<std::size_t>(gear.joint)];
+    const std::string& name = element.name;
     table.add_row(
         {name,
-         turns ? "-"
-               : figure("joints", name, "max_force", seen.max_force, "N", figure.noise_of(peaks.force(gear.joint))),
+         turns && !has_teeth(element)
+             ? "-"
+             : figure("joints", name, "max_force", seen.max_force, "N", figure.noise_of(peaks.force(gear.joint))),
          turns ? figure("joints", name, "max_torque", seen.max_torque, "N*m", figure.noise_of(peaks.torque(gear.joint)))
                : "-"});
   }
@@ -324,10 +327,7 @@ std::string run_table(const RunRecord& record) {
   const std::string tables = joints.text("  ") + play.text("  ") + gears.text("  ") + drivers.text("  ") +
                              forces.text("  ") + paths.text("  ");
   text += tables + noise_line(tables) + window_lines(record);
-  const auto rigid = [&](const Gear& one) {
-    return !record.model.joints[static_cast<std::size_t>(one.joint)].has_play;
-  };
-  if (std::ranges::any_of(record.model.gears, rigid)) text += gear_sentence;
+  if (std::ranges::any_of(record.model.joints, couples_alone)) text += gear_sentence;
   text += twin_line(record.twin);
   text += repeat_lines(record.repeat);
   const bool any = record.statistics.any();

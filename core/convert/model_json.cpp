@@ -16,6 +16,7 @@
 #include "base/token.h"
 #include "base/unit.h"
 #include "format/parameter_tree.h"
+#include "model/gear_teeth.h"
 
 namespace freeplay {
 namespace {
@@ -210,7 +211,10 @@ class ModelWriter {
       json["of"] = {first.name, second.name};
       json["ratio"] = number(gear.ratio, unit == input ? "1" : unit + "/" + input);
       json["offset"] = gear.offset ? number(*gear.offset, unit) : Json("auto");
-      if (!one.has_play) return json;
+      if (!one.has_play) {
+        if (has_teeth(one)) json[pressure_angle_word] = number(pressure_angle(one), "rad");
+        return json;
+      }
       const char* const block = one.component->description.block;
       Json own = parameters(*one.parameters);
       for (const char* key : {"first_radius", "middle"}) own[block].erase(key);  // of the gear

@@ -1,6 +1,7 @@
 #include "format/gear.h"
 
 #include "format/doubtful_number.h"
+#include "format/gear_teeth.h"
 #include "format/loose_gear.h"
 #include "freeplay/plugin.h"
 
@@ -29,16 +30,13 @@ class GearEntry {
 
   void read() {
     map_.find("type");
-    const auto of = map_.require("of"), ratio = map_.require("ratio"), offset = map_.find("offset");
+    const auto of = map_.require("of"), ratio = map_.require("ratio"), offset = map_.find("offset"),
+               teeth = map_.find("pressure_angle");
     Gear gear;
     gear.joint = joint_;
     const bool paired = of && read_pair(*of, gear);
     const Component* loose = loose_gear(draft_, map_);
     const CheckedParameters play = loose != nullptr ? read_play(*loose, gear, paired) : CheckedParameters{};
-    if (const auto teeth = map_.find("pressure_angle"); teeth && loose == nullptr) {
-      teeth->fail_at_key("conflicting-keys", "'" + teeth->path() + "' is of teeth with play", {},
-                         "give their play by a block 'clearance'");
-    }
     map_.finish();
     const bool given = offset && !(offset->node().is_scalar() && offset->node().text == "auto");
     // Of what dimension they must be is known by the pair alone; they are read without it for their other mistakes.
@@ -57,6 +55,7 @@ class GearEntry {
     draft_.model.joints[static_cast<std::size_t>(joint_)].gear = static_cast<int>(draft_.model.gears.size());
     draft_.model.gears.push_back(gear);
     if (play.block) loosen(draft_, gear, play, entry_);
+    if (teeth && loose == nullptr && number && gear.ratio != 0.0) give_teeth(draft_, *teeth, gear);
   }
 
  private:

@@ -86,7 +86,8 @@ constexpr FormatKey gear[] = {
     {"of", "list of name", "", "required", "Two joints that have a coordinate.", "[input, output]"},
     {"ratio", "quantity", "", "required", "Plain, or length per angle between a turn and a slide.", "-2"},
     {"offset", "quantity | 'auto'", "", "auto", "auto: what the assembled start has.", "0"},
-    {"pressure_angle", "quantity", "rad", "", "Of teeth that press at the pitch point, with play.", "20 deg"},
+    {"pressure_angle", "quantity", "rad", "",
+     "Of teeth that press at the pitch point; without it a torque alone passes.", "20 deg"},
     {"clearance", "contents", "", "", "Teeth with play: the keys of the loose gear.",
      "{pitch_radius: 50 mm, gap: 50 um}"},
     use};

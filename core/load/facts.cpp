@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "model/gear_teeth.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -50,10 +51,10 @@ std::string facts_text(const Model& model, const ModelFacts& facts) {
   text += line("dof", actual.dof) + line("dof_driven", actual.dof_driven);
   if (actual.driver_redundant > 0) text += line("driver_redundant", actual.driver_redundant);
   if (facts.ideal) text += ideal_text(*facts.ideal);
-  const auto rigid = std::ranges::count_if(
-      model.gears, [&](const Gear& one) { return !model.joints[static_cast<std::size_t>(one.joint)].has_play; });
-  if (rigid > 0) {
-    text += fmt::format("  {:<18}  {} (the forces of their teeth on the bearings are not modelled)\n", "gears", rigid);
+  const auto alone = std::ranges::count_if(
+      model.gears, [&](const Gear& one) { return couples_alone(model.joints[static_cast<std::size_t>(one.joint)]); });
+  if (alone > 0) {
+    text += fmt::format("  {:<18}  {} (the forces of their teeth on the bearings are not modelled)\n", "gears", alone);
   }
   return text;
 }

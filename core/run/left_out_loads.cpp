@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "base/index.h"
+#include "model/gear_teeth.h"
+#include "system/tooth_forces.h"
 
 namespace freeplay {
 namespace {
@@ -26,6 +28,10 @@ LeftOutLoads::LeftOutLoads(const System& system, const Channels& channels) : sys
                      .second = second,
                      .of_gear = rows.size > 0 && system.model().joints[at(j)].gear >= 0});
   }
+  for (const Gear& gear : system.model().gears) {
+    if (!has_teeth(system.model().joints[at(gear.joint)])) continue;
+    for (const int joint : {gear.first, gear.second}) rows_[at(joint)].of_gear = true;
+  }
 }
 
 // As Constraints::reaction() sums it up.
@@ -35,6 +41,13 @@ double LeftOutLoads::force(int joint, const Evaluation& e, std::span<const doubl
   if (rows.of_gear) {
     double wrench[6];
     system_.constraints().reaction(joint, e, lambda, wrench);
+    for (const Gear& gear : system_.model().gears) {
+      if (!has_teeth(system_.model().joints[at(gear.joint)])) continue;
+      if (joint != gear.joint && joint != gear.first && joint != gear.second) continue;
+      for (const ToothWrench& one : tooth_wrenches(system_, gear, e, lambda)) {
+        if (one.joint == joint) one.add_to(wrench, 5);
+      }
+    }
     return amount<Bodies>(wrench);
   }
   double sum[3] = {};

@@ -9,8 +9,10 @@
 #include "base/angle.h"
 #include "base/index.h"
 #include "component/joint_answer.h"
+#include "model/gear_teeth.h"
 #include "run/energy_account.h"
 #include "system/path_row.h"
+#include "system/tooth_forces.h"
 
 namespace freeplay {
 
@@ -42,6 +44,12 @@ void Observer::observe_loads(const State& state, const Evaluation& e, std::span<
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     system_.constraints().reaction(j, e, lambda, wrench);
     write_wrench(wrench, &row[at(channels_.joints[at(j)].force)]);
+  }
+  for (const Gear& gear : model.gears) {
+    if (!has_teeth(model.joints[at(gear.joint)])) continue;
+    for (const ToothWrench& one : tooth_wrenches(system_, gear, e, lambda)) {
+      one.add_to(&row[at(channels_.joints[at(one.joint)].force)], 2);
+    }
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int r = system_.layout().driver_row(d);

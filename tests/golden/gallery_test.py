@@ -156,6 +156,25 @@ class Gallery(ProgramTest):
         self.assertEqual(0, min(map(min, tensions)))
         self.assertLess(abs(columns["joint.motor.speed"][-1] / columns["joint.fan.speed"][-1] - 3), 1e-2)
 
+    def test_the_pin_of_a_planet_bears_what_both_of_its_meshes_press_across(self):
+        columns = self.run_file("gear-train")
+        self.assert_all(columns, lambda at: at("body.sun.omega") - 3.6 * at("body.arm.omega"), 1e-9)
+        # Without the way round, on which the planet is held by 0.5 kg 36 mm omega^2.
+        across = lambda at, name: (at("joint." + name + ".fy") * math.cos(at("body.arm.angle"))
+                                   - at("joint." + name + ".fx") * math.sin(at("body.arm.angle")))
+        self.assert_all(columns, lambda at: across(at, "inner") - at("joint.inner.torque") / -0.016, 1e-6)
+        self.assert_all(columns, lambda at: across(at, "pin") + across(at, "inner") + across(at, "outer"), 2)
+
+    def test_a_trapezoid_turns_the_inner_wheel_further_and_teeth_push_the_rack_away(self):
+        columns = self.run_file("steering")
+        for left, right in zip(columns["body.wheel_left.angle"], columns["body.wheel_right.angle"]):
+            if abs(left + right) > 0.2:  # as Ackermann wants it for a base of 2.5 m to 2.9 m
+                base = 1.4 / abs(1 / math.tan(left) - 1 / math.tan(right))
+                self.assertGreater((left + right) * (abs(left) - abs(right)), 0)
+                self.assertTrue(2.5 < base < 2.9, base)
+        self.assertLess(max(columns["joint.teeth.fy"]), 0)
+        self.assert_all(columns, lambda at: at("joint.teeth.fy") + abs(at("joint.teeth.fx")) * math.tan(math.radians(20)), 1e-9)
+
     def test_the_counterweight_of_a_pump_jack_saves_torque(self):
         largest = max(map(abs, self.run_file("pump-jack")["driver.motor.torque"]))
         self.freeplay("run", os.path.join(FOLDER, "pump-jack.yaml"), "--out", "light", "--set", "counterweight=1kg", "--quiet")
