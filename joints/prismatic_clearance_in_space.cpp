@@ -27,14 +27,17 @@ struct BarInGuide {
   static double sign(std::size_t bit) { return bit % 2 == 0 ? 1.0 : -1.0; }
 
   template <class T>
-  WallPlace<T> place(const RelativeMotion<T>& m, const Turn<T>& turn, std::size_t i) const {
+  WallPlace<T> place(const TurnedMotion<T>& m, std::size_t i) const {
     const double end = sign(i), side = sign(i / 2), flank = sign(i / 4);
     const Vec<double> corner{end * half_length, side * half_width, flank * half_height};
-    const Vec<T> change = turn.change(corner);
+    const Vec<T> change = m.turn.change(corner);
     const Vec<T> arm{T(corner.x) + change.x, T(corner.y) + change.y, T(corner.z) + change.z};
     if (i < 8) return {T(side) * (m.d.y + change.y) - T(gap), {0.0, side, 0.0}, arm};
     return {T(flank) * (m.d.z + change.z) - T(gap_height), {0.0, 0.0, flank}, arm};
   }
+
+  static std::array<double, 5> stand(const TurnedMotion<double>& m) { return {m.d.y, m.d.z, m.r.x, m.r.y, m.r.z}; }
+  static constexpr bool between_walls() { return true; }
 
   double half_length, half_width, half_height;  ///< [m]
   double gap, gap_height;                       ///< play to each side along y and z [m]
@@ -117,11 +120,10 @@ constexpr Channel bar_channels[] = {
     {"rear_lower_left_z_fn", "N"},
     {"rear_lower_left_z_ft", "N"},
 };
-constexpr std::size_t stand_channels = 5;
-
 constexpr auto bar_roles = [] {
   std::array<ChannelRole, std::size(bar_channels)> roles{};
   roles.fill(ChannelRole::none);
+  constexpr std::size_t stand_channels = 5;
   roles[stand_channels] = ChannelRole::penetration;
   roles[stand_channels + 1] = ChannelRole::normal_force;
   roles[stand_channels + 2] = ChannelRole::friction_force;
@@ -138,8 +140,8 @@ constexpr auto bar_roles = [] {
 ///   delta = sigma (d + R_b s - s)_y - g        and the same with z
 ///
 /// Every contact has half of the laws' forces, so that a block which stays in the plane feels what the planar one does.
-/// `wall_contacts.h` has what follows from it. Flores, Ambrosio, Claro and Lankarani 2008, J Comput Nonlinear Dyn 3,
-/// 011007; Qi, Luo and Huang 2011, Multibody Syst Dyn 26.
+/// `wall_contacts.h` and `contacts.h` have what follows from it. Flores, Ambrosio, Claro and Lankarani 2008, J Comput
+/// Nonlinear Dyn 3, 011007; Qi, Luo and Huang 2011, Multibody Syst Dyn 26.
 class BarWithPlay final : public WallContacts<BarInGuide> {
  public:
   explicit BarWithPlay(const Parameters& p) : BarWithPlay(p, read_bar(p)) {}
@@ -162,13 +164,6 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     b_in_a = planar::pose(position, 0.0);
     return true;
   }
-  void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
-    const RelativeMotion<double> motion = PairInFirstAxes::with_rotation_vector(in).numbers();
-    const double stand[] = {motion.d.y, motion.d.z, motion.r.x, motion.r.y, motion.r.z};
-    static_assert(std::size(stand) == stand_channels);
-    std::copy(std::begin(stand), std::end(stand), channels.begin());
-    write_channels(in, motion, channels.part(stand_channels, channels.size - stand_channels));
-  }
   /// Loaded, all four corners of a side carry alike; the moment of the ideal joint is not carried.
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
     const double* rotation = out.rotation;
@@ -179,8 +174,8 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     Eigen::Vector3d shift(0.0, shift_[0], shift_[1]);
     if (loaded_) {
       const Eigen::Vector3d load = axes.transpose() * Eigen::Vector3d(reaction[0], reaction[1], reaction[2]);
-      shift = {0.0, rest_at_wall(laws().contact, geometry().gap, 0.5 * load.y(), 0.0),
-               rest_at_wall(laws().contact, geometry().gap_height, 0.5 * load.z(), 0.0)};
+      shift = {0.0, rest_at_wall(laws().normal, geometry().gap, 0.5 * load.y(), 0.0),
+               rest_at_wall(laws().normal, geometry().gap_height, 0.5 * load.z(), 0.0)};
     }
     Eigen::Map<Eigen::Vector3d>(out.position) = axes * shift;
     Eigen::Map<Eigen::Vector3d>(out.velocity) = axes * Eigen::Vector3d(0.0, shift_rate_[0], shift_rate_[1]);

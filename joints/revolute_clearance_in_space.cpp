@@ -74,7 +74,7 @@ class PinInSpace final : public Joint {
     for (std::size_t i = 0; i < contacts_kept; ++i) {
       if (!normals.on[i]) continue;
       out.potential += share(i) * normals.force[i].potential;
-      out.potential_rate += share(i) * storing_power(play_.contact, normals.gap[i], normals.force[i]);
+      out.potential_rate += share(i) * storing_power(play_.normal, normals.gap[i], normals.force[i]);
     }
     if (play_.memory() > 0) return apply_with_memory(in, pair, normals, out);
     pair.write(force(motion, normals, NoMemory{play_}), out);
@@ -109,7 +109,7 @@ class PinInSpace final : public Joint {
     if (index % 2 == 0) {
       tell_begin(one, gap(motion, place), own, fields);
       if (in.whole_mobility != nullptr) {
-        own[impact_time] = impact_duration(play_.contact, gap(motion, place), play_.radii.clearance,
+        own[impact_time] = impact_duration(play_.normal, gap(motion, place), play_.radii.clearance,
                                            inverse_mass(pair, place, in.whole_mobility), share(place));
       }
     } else {
@@ -126,7 +126,7 @@ class PinInSpace final : public Joint {
     for (std::size_t i = 0; i < contacts_kept; ++i) {
       const Span<double> own = history.part(i * slots, slots);
       const bool touched = own[phase] != flight;
-      play::commit(contact_input(in, i), gap(motion, i), play_.contact, share(i), own);
+      play::commit(contact_input(in, i), gap(motion, i), play_.normal, share(i), own);
       if (touched && own[phase] == flight) forget(i, in.internal, history);
     }
   }
@@ -171,7 +171,7 @@ class PinInSpace final : public Joint {
       if (!normals.on[i]) continue;
       const ContactForce& f = normals.force[i];
       const Approach& here = normals.gap[i];
-      double tangential = 0.0, lost = f.normal * here.rate - storing_power(play_.contact, here, f);
+      double tangential = 0.0, lost = f.normal * here.rate - storing_power(play_.normal, here, f);
       if (is_end(i) && play_.slides) {
         const EndGap<double> end = bearing_.end(motion, i, play_);
         const Vec<double> friction = play_.memory() == 0
@@ -229,7 +229,7 @@ class PinInSpace final : public Joint {
       const JointInput one = contact_input(in, i);
       const Approach here = gap(motion, i);
       if (one.history[phase] == flight || !touches(one, here)) continue;
-      const char* why = play_.contact.outside_range({here.penetration, here.rate, one.history[approach_speed]});
+      const char* why = play_.normal.outside_range({here.penetration, here.rate, one.history[approach_speed]});
       if (why != nullptr) return why;
     }
     return nullptr;
@@ -247,10 +247,10 @@ class PinInSpace final : public Joint {
     Eigen::Vector3d place = Eigen::Vector3d::Zero();
     // The bearing pushes the journal along -n.
     if (radial >= 1e-12)
-      place.head<2>() = -(clearance + resting_penetration(play_.contact, clearance, radial)) / radial * load.head<2>();
+      place.head<2>() = -(clearance + resting_penetration(play_.normal, clearance, radial)) / radial * load.head<2>();
     if (way == Kept::by_shoulders && axial >= 1e-12)
       place.z() =
-          -std::copysign(bearing_.axial_clearance + resting_penetration(play_.contact, clearance, axial), load.z());
+          -std::copysign(bearing_.axial_clearance + resting_penetration(play_.normal, clearance, axial), load.z());
     Eigen::Map<Eigen::Vector3d>(out.position) = axes * place;
   }
 
@@ -273,7 +273,7 @@ class PinInSpace final : public Joint {
       normals.gap[i] = gap(motion, i);
       const JointInput one = contact_input(in, i);
       if (!touches(one, normals.gap[i])) continue;
-      normals.force[i] = normal_force(play_.contact, normals.gap[i], one);
+      normals.force[i] = normal_force(play_.normal, normals.gap[i], one);
       normals.on[i] = normals.any = true;
     }
     return normals;

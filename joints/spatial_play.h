@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "freeplay/kit/contact_memory.h"
 #include "freeplay/kit/contact_phase.h"
 #include "freeplay/kit/friction_slopes.h"
 #include "relative_motion.h"
@@ -28,7 +29,7 @@ inline constexpr ChannelRole gap_roles[] = {
 struct SpatialLaws {
   /// Without the sizes of the surfaces, `sized`, there is no friction: its arms are not known.
   SpatialLaws(const Parameters& p, const ContactPair& pair, bool sized)
-      : contact(p.contact_law("clearance.contact", pair)),
+      : normal(p.contact_law("clearance.contact", pair)),
         friction(p.friction_law("clearance.friction")),
         law_variables(friction.internal_variables()) {
     if (law_variables > most_law_variables)
@@ -37,10 +38,10 @@ struct SpatialLaws {
     slides = sized && !is_inert(friction);
   }
   /// Of one contact: where its laws have kinks. Without sliding the law of friction is not asked.
-  std::int32_t count_kinks() const { return slides ? play::count_kinks(contact, friction) : contact.switches(); }
+  std::int32_t count_kinks() const { return slides ? play::count_kinks(normal, friction) : normal.switches(); }
   void write_kinks(const Approach& gap, double slip, const JointInput& in, Span<double> g) const {
-    if (slides) return play::write_kinks(contact, friction, gap, slip, in, g);
-    contact.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g);
+    if (slides) return play::write_kinks(normal, friction, gap, slip, in, g);
+    normal.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g);
   }
 
   /// Friction on b for the normal force and the slip velocity of b on a, both in the tangential plane:
@@ -74,7 +75,7 @@ struct SpatialLaws {
   Vec<T> friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate, Span<const T> z,
                         Span<T> z_rate) const;
 
-  ContactLawRef contact;
+  ContactLawRef normal;
   FrictionLawRef friction;
   int law_variables;
   bool slides;  ///< is there friction?
@@ -187,21 +188,8 @@ inline double predicted_speed(const Approach& gap, double second, const Eigen::V
   return predicted_speed(gap, second, dt, [&](double s) { return (rate + s * rate_of_rate).norm(); });
 }
 
-/// What a contact remembers: its internal variables less what they were when the last contact ended, since not every
-/// end is marked by an event that could clear them.
-struct Memory {
-  Memory(Span<const double> internal, Span<const double> forgotten) : size(internal.size) {
-    for (std::size_t i = 0; i < size; ++i) z[i] = internal[i] - forgotten[i];
-  }
-  template <class T>
-  std::array<T, 3 * most_law_variables> numbers() const {
-    std::array<T, 3 * most_law_variables> out;
-    for (std::size_t i = 0; i < size; ++i) out[i] = T(z[i]);
-    return out;
-  }
-  double z[3 * most_law_variables];
-  std::size_t size;
-};
+/// What a contact remembers: vectors.
+using Memory = MemoryOf<std::size_t{3} * most_law_variables>;
 
 /// Derivatives of friction with memory by the numbers of the memory: use(j, dF/dz_j, dz'/dz_j) for each.
 template <class Use>

@@ -51,9 +51,9 @@ class SphericalClearance final : public Joint {
     const PairInFirstAxes pair = seen_from_a(in);
     const Gap<double> gap(pair.numbers(), play_);
     if (!touches(in, gap.approach())) return;
-    const ContactForce f = normal_force(play_.contact, gap.approach(), in);
+    const ContactForce f = normal_force(play_.normal, gap.approach(), in);
     out.potential = f.potential;
-    out.potential_rate = storing_power(play_.contact, gap.approach(), f);
+    out.potential_rate = storing_power(play_.normal, gap.approach(), f);
     if (play_.memory() > 0) return apply_with_memory(in, pair, gap, f, out);
     pair.write(force(gap, f).total, out);
     if (!out.derivatives.empty()) pair.write_derivatives(force(Gap<Dual>(pair.duals(), play_), f).total, 24, out);
@@ -88,7 +88,7 @@ class SphericalClearance final : public Joint {
       if (in.mobility != nullptr) {
         const Eigen::Vector3d n = pair.axes() * Eigen::Vector3d(gap.n.x, gap.n.y, gap.n.z);
         const double inverse_mass = n.dot(Eigen::Map<const RowMajor3>(in.mobility) * n);
-        history[impact_time] = impact_duration(play_.contact, gap.approach(), play_.radii.clearance, inverse_mass, 1.0);
+        history[impact_time] = impact_duration(play_.normal, gap.approach(), play_.radii.clearance, inverse_mass, 1.0);
       }
     } else {
       tell_end(in, gap.approach(), history, fields);
@@ -98,7 +98,7 @@ class SphericalClearance final : public Joint {
   }
   void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
     const bool touched = history[phase] != flight;
-    play::commit(in, approach(in), play_.contact, 1.0, history);
+    play::commit(in, approach(in), play_.normal, 1.0, history);
     if (touched && history[phase] == flight) forget(in.internal, history);
   }
 
@@ -108,7 +108,7 @@ class SphericalClearance final : public Joint {
     Forces<double> f{};
     double normal = 0.0;
     if (touches(in, gap.approach())) {
-      const ContactForce contact = normal_force(play_.contact, gap.approach(), in);
+      const ContactForce contact = normal_force(play_.normal, gap.approach(), in);
       normal = contact.normal;
       std::array<double, 3 * most_law_variables> unused;
       f = play_.memory() == 0 ? force(gap, contact)
@@ -142,7 +142,7 @@ class SphericalClearance final : public Joint {
   const char* warning(const JointInput& in) const override {
     const Approach gap = approach(in);
     if (in.history[phase] == flight || !touches(in, gap)) return nullptr;
-    return play_.contact.outside_range({gap.penetration, gap.rate, in.history[approach_speed]});
+    return play_.normal.outside_range({gap.penetration, gap.rate, in.history[approach_speed]});
   }
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
     out = play_.start.offset;
@@ -152,7 +152,7 @@ class SphericalClearance final : public Joint {
     if (size < 1e-12) return;
     // The socket pushes the ball along -n.
     const double clearance = play_.radii.clearance,
-                 distance = clearance + resting_penetration(play_.contact, clearance, size);
+                 distance = clearance + resting_penetration(play_.normal, clearance, size);
     for (int i = 0; i < 3; ++i) out.position[i] = -distance * load[i] / size;
   }
   bool place(double, Pose& b_in_a) const override {
