@@ -1,4 +1,6 @@
 """Friction of constant size in joints and stops at their ends, in the plane and in space, against formulas."""
+import csv
+import json
 import math
 import unittest
 
@@ -25,6 +27,10 @@ SPACES = {"plane": (PLANE, "ground"), "space": (SPACE, "ground/at")}
 
 
 class Forces(ModelTest):
+    def events(self, kind):
+        with open(self.path("out", "events.csv"), encoding="utf-8") as file:
+            return [event for event in csv.DictReader(file) if kind in event["kind"]]
+
     def columns_of(self, type_name, linear, rotational, start, end, steps=EXACT):
         for space, (model, ground) in SPACES.items():
             with self.subTest(space=space):
@@ -88,6 +94,62 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
             after = columns["joint.slide.speed"][-1]
             self.assertLess(after, -1.0)
             self.assertAlmostEqual(kept(2.0, 0.3), kept(after, 0.3), delta=1e-6)
+
+    def test_a_stop_by_a_law_of_contact_moves_as_the_spring_of_its_stiffness(self):
+        """r^2 K is the stiffness of a turn; and with error control the begin and the end of each contact are met."""
+        start = "initial: {speeds: {slide: 2.1, pin: -2.9}}"
+        for columns in self.columns_of("joint-stop", "lower: -1, upper: 0.2, contact: {law: kelvin-voigt, K: 5000, D: 0}",
+                                       "lower: -0.3, upper: 2, radius: 0.1, contact: {law: kelvin-voigt, K: 80000, D: 0}", start,
+                                       "0.3 s", EXACT):
+            for name, force, v, end, omega, lever in (("slide.position", "a.", 2.1, 0.2, 50.0, 1.0),
+                                                      ("pin.angle", "b.", -2.9, -0.3, 40.0, 0.1)):
+                first, over = end / v, end / v + math.pi / omega
+
+                def place(t):
+                    if t < first:
+                        return v * t
+                    return end + v / omega * math.sin(omega * (t - first)) if t < over else end - v * (t - over)
+                self.assert_column(columns, "joint." + name, place, 1e-9)
+                depth = lever * abs(v) / omega
+                self.assertAlmostEqual(0.0, max(columns["force." + force + "delta"]) / depth - 1.0, delta=0.1)
+            begins = [event for event in self.events("contact_begin")]
+            self.assertEqual([("a", "upper_contact_begin"), ("b", "lower_contact_begin")], [(e["joint"], e["kind"]) for e in begins])
+            for event, time, speed in zip(begins, (0.2 / 2.1, 0.3 / 2.9), (2.1, 0.29)):
+                self.assertAlmostEqual(time, float(event["time"]), delta=1e-10)
+                self.assertAlmostEqual(speed, float(event["speed"]), delta=1e-9)
+
+    def test_a_stop_by_a_law_of_contact_gives_the_speed_back_that_its_restitution_says(self):
+        start = "initial: {speeds: {slide: 2.1, pin: -2.9}}"
+        law = "contact: {law: hu-guo, K: 1e8, restitution: 0.6}"
+        for columns in self.columns_of("joint-stop", "lower: -1, upper: 0.2, " + law, "lower: -0.3, upper: 2, radius: 0.1, " + law,
+                                       start, "0.15 s", EXACT):
+            for name, v in (("slide", 2.1), ("pin", -2.9)):
+                self.assertAlmostEqual(-0.6, columns["joint.%s.speed" % name][-1] / v, delta=0.03)
+            self.assertLess(max(map(abs, columns["energy.residual"])), 1e-8)
+
+    def test_a_stop_among_the_joints_has_statistics_of_its_contacts(self):
+        model = PLANE[:-2] + """, end: {type: joint-stop, between: [ground, block], lower: -0.1, upper: 0.2,
+  contact: {law: hertz, K: 1e8}}}
+initial: {speeds: {slide: 2.1}}
+simulation: {end: 0.5 s, %s}
+""" % EXACT
+        self.run_model(model)
+        seen = json.loads(self.read("out", "summary.json"))["joints"]["end"]
+        self.assertEqual(3, seen["contacts"])  # at 0.095, about 0.24 and about 0.38 s
+        # m v^2/2 = 2/5 K d^2.5
+        depth = (2.5 * 2.1 ** 2 / 1e8) ** 0.4
+        self.assertAlmostEqual(1.0, seen["max_delta"] / depth, delta=1e-3)
+        self.assertAlmostEqual(1.0, seen["max_fn"] / (1e8 * depth ** 1.5), delta=1e-3)
+
+    def test_mistakes_in_a_stop_are_told(self):
+        head = PLANE + "forces:\n  a: {type: joint-stop, kind: %s, between: [ground, %s], lower: %s, upper: 1%s}\n"
+        law = ", contact: {law: hertz, K: 1e8}"
+        for kind, body, lower, rest, expected in (
+                ("linear", "block", "0", "", "missing-key"), ("linear", "block", "0", law + ", stiffness: 1", "conflicting-keys"),
+                ("linear", "block", "0", law + ", damping: 1", "conflicting-keys"), ("linear", "block", "1", law, "out-of-range"),
+                ("linear", "block", "0", law + ", radius: 1", "conflicting-keys"), ("rotational", "wheel", "0", law, "missing-key"),
+                ("linear", "block", "0", ", stiffness: 1, radius: 1", "conflicting-keys")):
+            self.refusal(head % (kind, body, lower, rest), id=expected, line=6)
 
     def test_ends_in_the_wrong_order_are_refused(self):
         self.refusal(PLANE + "forces:\n  a: {type: joint-stop, kind: linear, between: [ground, block], lower: 1, upper: 0, "

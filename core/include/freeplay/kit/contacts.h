@@ -270,6 +270,7 @@ class Contacts : public Joint {
   using Contact = typename Kinematics::template Contact<T>;
 
   static constexpr std::size_t sum_channels = 6;
+  static constexpr bool has_turning_rates = requires(const Motion<double>& m) { m.w_a; };
 
   static Contact<double> contact(const Geometry& geometry, const Motion<double>& motion, std::size_t i) {
     return {geometry.place(motion, i), motion};
@@ -381,7 +382,10 @@ class Contacts : public Joint {
     std::array<bool, count> near{};
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
-      near[i] = which[i] && (!geometry_.between_walls() || may_touch(contact(geometry, now, i), now, acc, dt));
+      near[i] = which[i];
+      if constexpr (has_turning_rates) {
+        if (near[i] && geometry_.between_walls()) near[i] = may_touch(contact(geometry, now, i), now, acc, dt);
+      }
       any = any || near[i];
     }
     if (!any) return;
@@ -394,7 +398,8 @@ class Contacts : public Joint {
       const auto velocity = Kinematics::each_of(at.velocity, [](const Dual&x) { return x.value; }),
                  second = Kinematics::each_of(at.velocity, rate_of);
       // Of a normal that is no unit vector, as where a depth counts an angle.
-      const double size = keeps ? Kinematics::size_of(at.normal) : 1.0;
+      double size = 1.0;
+      if constexpr (keeps) size = Kinematics::size_of(at.normal);
       history[i * slots + predicted] = predicted_speed(at.approach(), rate_of(at.rate), dt,
                                                        [&](double s) { return size * (velocity + s * second).norm(); });
     }
