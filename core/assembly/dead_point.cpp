@@ -82,7 +82,8 @@ std::optional<SingularPosition> singular_position(const System& system, const St
   mechanism.stand_at(system, now);
   mechanism.state.t() = now.t();
   const ClosedMechanism::Rows rows = mechanism.position_rows();
-  if (!mechanism.holds(rows)) return std::nullopt;  // with play there are no rows to lose
+  // With play there are no rows to lose.
+  if (rows.matrix.rows() == 0 || !mechanism.holds(rows)) return std::nullopt;
   const RowSvd here(rows);
   const Eigen::VectorXd& values = here.svd.singularValues();
   if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > nearly_lost * values[0]) return std::nullopt;

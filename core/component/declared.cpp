@@ -49,6 +49,7 @@ std::string declaration_fault(const JointLayout& layout) {
   if (!(layout.clearance >= 0.0) || !std::isfinite(layout.clearance)) {
     return fmt::format("it declares a clearance of {} m", layout.clearance);
   }
+  if (!(layout.time_scale >= 0.0)) return fmt::format("it declares changes that last {} s", layout.time_scale);
   if (layout.play_shape > PlayShape::walls) return "it declares play of an unknown shape";
   if (!(layout.contact_reach >= 0.0) || !std::isfinite(layout.contact_reach)) {
     return fmt::format("it declares contacts {} m from the second origin", layout.contact_reach);

@@ -161,7 +161,7 @@ double IntegratorDrive::estimate(double dt, double tolerance, double& truth, con
   NewtonStageSolver solver(reference_.system(), parameters_);
   solver.control_error(tolerance, tolerance, 0.0);
   GuardedState to = accepted_;
-  solver.local_error().begin_attempt(to.v.span());
+  solver.local_error().begin_attempt(to.v.span(), to.z.span());
   Attempt attempt{};
   GuardedNumbers scratch(size_of(layout_.scratch), 0.0);
   if (!call_attempt(dt, to, scratch, solver.table(), false, attempt) || attempt.converged == 0) return 0.0;

@@ -327,7 +327,13 @@ bool AdaptiveRun::bounded_step(double& dt, int& limiting_joint) {
     const JointInput in = run_.system.joints().input(j, point(run_.accepted), run_.e_accepted);
     double limit = unbounded;
     Fault fault;
-    if (!run_.system.joints().handle(j).step_limit(in, limit, fault.message)) {
+    bool good = run_.system.joints().handle(j).step_limit(in, limit, fault.message);
+    if (good && !(limit >= 0.0)) {
+      good = false;
+      abi::copy_text(fault.message.text, sizeof fault.message.text,
+                     "the longest step that it allows is no length of time");
+    }
+    if (!good) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;
       return parts_.failure.fail_with(fault, run_.accepted.t());

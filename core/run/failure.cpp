@@ -159,7 +159,8 @@ std::string RunFailure::why_so_small(double dt, double smallest, int limiting_jo
 // Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
 std::string RunFailure::why_energy_grows(double dt, double gained) {
   if (run_.model.clearance_joints() == 0) {
-    return run_.adaptive && run_.solver.regularity() < singular ? why_singular() : why_not_converged(dt);
+    if (run_.adaptive && run_.solver.regularity() < singular) return why_singular();
+    if (*run_.solver.trouble()) return why_not_converged(dt);
   }
   std::string text = fmt::format(
       "t = {:.9g} s: energy would grow by {:.3g} J in a step of {:.3g} s, more than everything that acts could put in",
@@ -169,7 +170,8 @@ std::string RunFailure::why_energy_grows(double dt, double gained) {
     text += fmt::format("; joint '{}' pulls hardest", run_.model.joints[static_cast<std::size_t>(joint)].name);
   const std::string cause = likely_cause(run_.system, run_.e_accepted,
                                          {run_.accepted.t(), run_.adaptive ? 0.0 : dt, joint, run_.first_forces});
-  return text + (cause.empty() ? std::string(advice::accuracy) : std::string(cause_words) + cause);
+  if (!cause.empty()) return text + std::string(cause_words) + cause;
+  return text + std::string(run_.settings.accuracy > 0.0 ? advice::jump : advice::accuracy);
 }
 
 /// Numbers of the program's own types that are not finite any more come of the model or of the step.
@@ -217,7 +219,9 @@ void RunFailure::explain_dead_point() {
 
 // Where constraints have lost rank no step is short enough.
 void RunFailure::explain_singular_position() {
-  if (!run_.outcome.reason.ends_with(advice::smaller_step) && !run_.outcome.reason.ends_with(advice::error)) return;
+  const auto advises = [&](std::string_view advice) { return run_.outcome.reason.ends_with(advice); };
+  const bool grew = run_.model.clearance_joints() == 0 && (advises(advice::jump) || advises(advice::accuracy));
+  if (!grew && !advises(advice::smaller_step) && !advises(advice::error)) return;
   std::optional<SingularPosition> position;
   try {
     position = singular_position(run_.system, run_.accepted);
@@ -237,7 +241,8 @@ void RunFailure::explain_failure() {
   const Wreck wreck{run_.accepted.t(), run_.adaptive ? 0.0 : run_.settings.step, failed_joint_, run_.first_forces};
   const std::string cause = likely_cause(run_.system, run_.e_accepted, wreck);
   if (cause.empty()) return;
-  for (const std::string_view advice : {advice::smaller_step, advice::accuracy, advice::other_steps, advice::error}) {
+  for (const std::string_view advice :
+       {advice::smaller_step, advice::accuracy, advice::other_steps, advice::jump, advice::error}) {
     if (run_.outcome.reason.ends_with(advice)) run_.outcome.reason.resize(run_.outcome.reason.size() - advice.size());
   }
   run_.outcome.reason += std::string(cause_words) + cause;

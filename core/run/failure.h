@@ -14,6 +14,8 @@ namespace advice {
 inline constexpr std::string_view smaller_step = "; try a smaller step";
 inline constexpr std::string_view accuracy = "; ask for an accuracy in place of a step";
 inline constexpr std::string_view other_steps = "; ask for less accuracy, or for steps of one size";
+inline constexpr std::string_view jump =
+    "; a force or the energy stored in a joint jumps there, or the integrator errs";
 inline constexpr std::string_view error = "; allow smaller steps or a larger error";
 }  // namespace advice
 inline constexpr std::string_view cause_words = "; likely cause: ";

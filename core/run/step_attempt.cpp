@@ -119,7 +119,7 @@ bool StepAttempt::make(double dt, bool& converged) {
   run_.trial.assign(run_.accepted);
   if (!begin_steps(dt, run_.trial)) return false;
   run_.solver.use_history(run_.trial.h());
-  if (run_.adaptive) run_.solver.local_error().begin_attempt(run_.accepted.v());
+  if (run_.adaptive) run_.solver.local_error().begin_attempt(run_.accepted.v(), run_.accepted.z());
   const Profile::Timer timer(run_.evaluations.profile, Phase::integrator);
   StateView view = run_.trial.view();
   Attempt attempt{};
@@ -150,6 +150,11 @@ bool StepAttempt::make(double dt, bool& converged) {
   }
   converged = attempt.converged != 0;
   run_.error = attempt.error;
+  const bool finite = is_finite(Span<const double>(run_.trial.before_history()));
+  if (run_.adaptive && converged && finite && !(attempt.error >= 0.0) && !failure_.all_built_in()) {
+    return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: its estimate of the error is {} [plugin-failed]",
+                                        run_.accepted.t(), integrator_words(run_.model), attempt.error));
+  }
   const bool rejected = run_.adaptive && !(run_.error <= 1.0);  // whatever it left
   run_.left_bounds = false;
   if (!converged || rejected) return true;

@@ -12,7 +12,7 @@ LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
   motion_ = numbers(layout.nv());
   other_a_ = numbers(layout.nv());
   other_lambda_ = numbers(layout.nc());
-  other_z_ = other_rate_ = numbers(layout.nz());
+  most_z_ = other_z_ = other_rate_ = numbers(layout.nz());
 }
 
 double LocalError::norm(std::span<const double> position, std::span<const double> velocity) {
@@ -60,6 +60,12 @@ double LocalError::internal_norm(double dt, const StateView& end, std::span<cons
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const double part = model_size / unit[i] * dt * std::abs(other_a_[i] - end.a[i]) / velocity_now_;
     if (!(part <= largest)) largest = part, worst_component_ = static_cast<int>(i);
+  }
+  for (std::size_t i = 0; i < other_z_.size(); ++i) {
+    const double most = most_z_[i] > 0.0 ? most_z_[i] : std::abs(end.z[i]);
+    if (most > 0.0 && !(std::abs(error[i]) <= internal_allowed * most * std::max(largest, 1.0))) {
+      largest = std::abs(error[i]) / (internal_allowed * most), worst_component_ = -1;
+    }
   }
   return largest;
 }

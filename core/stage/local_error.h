@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -19,9 +20,10 @@ class LocalError {
   void allow(double position, double velocity, double relative) {
     position_ = position, velocity_ = velocity, relative_ = relative;
   }
-  /// The velocities at the start of the attempt. Their rounding is no error.
-  void begin_attempt(std::span<const double> v) {
+  /// The state at the start of the attempt. The rounding of velocities is no error.
+  void begin_attempt(std::span<const double> v, std::span<const double> z) {
     equations_.rows().begin_attempt();
+    for (std::size_t i = 0; i < most_z_.size(); ++i) most_z_[i] = std::max(most_z_[i], std::abs(z[i]));
     velocity_now_ =
         velocity_ + std::max(relative_, velocity_rounding) * equations_.system().size() * equations_.norm(v);
   }
@@ -35,11 +37,14 @@ class LocalError {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.position_, self.velocity_, self.relative_, self.velocity_now_, self.worst_component_);
+    archive(self.position_, self.velocity_, self.relative_, self.velocity_now_, self.worst_component_, self.most_z_);
   }
 
  private:
   static constexpr double velocity_rounding = 2e-14;  // relative
+  /// Of the largest amount that an internal variable had so far: while it moves nothing no other bound keeps a method
+  /// that is not stable from making it grow without end, and then it may come to act.
+  static constexpr double internal_allowed = 0.5;
 
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
@@ -52,6 +57,7 @@ class LocalError {
   double velocity_now_ = 0.0;  // allowed in the present attempt
   int worst_component_ = -1;
   std::vector<double> motion_;                                         // part of an error along the motion
+  std::vector<double> most_z_;                                         // largest amounts of accepted states
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // with the internal variables in error
 };
 

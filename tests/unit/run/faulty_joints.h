@@ -9,7 +9,26 @@
 
 namespace freeplay {
 
-/// From time `at` on: throws, or fills one of the numbers that it is asked for with one that is not finite.
+/// A friction of which what it remembers decays fast, and moves the body from time `at` on alone.
+class FadingMemory final : public Joint {
+ public:
+  explicit FadingMemory(const Parameters& p) : at_(p.number("at")) {}
+  void declare(JointLayout& layout) const override {
+    layout.forces = 1;
+    layout.internal_variables = 1;
+  }
+  void apply(const JointInput& in, JointForces& out) const override {
+    out.internal_rate[0] = 1.0 - 1e5 * in.internal[0];
+    if (in.t >= at_) out.wrench_b[0] = 1e3 * in.internal[0];
+  }
+  double next_corner(double t) const override { return t < at_ ? at_ : unbounded; }
+
+ private:
+  double at_;
+};
+
+/// From time `at` on: throws, fills one of the numbers that it is asked for with one that is not finite, or stores
+/// energy that nothing has brought.
 class FaultyJoint final : public Joint {
  public:
   explicit FaultyJoint(const Parameters& p) : at_(p.number("at")), fault_(static_cast<Fault>(p.word("fault"))) {}
@@ -24,6 +43,10 @@ class FaultyJoint final : public Joint {
     if (in.t < at_) return;
     if (fault_ == throws) throw std::runtime_error("out of order");
     if (fault_ == force) out.wrench_b[0] = not_a_number;
+    if (fault_ == leap) out.potential = 1e6;
+  }
+  double step_limit(const JointInput& in) const override {
+    return in.t >= at_ && fault_ == limit ? not_a_number : unbounded;
   }
   void begin_step(const JointInput& in, const MarkerAccelerations&, double, Span<double> history) const override {
     if (in.t >= at_ && fault_ == step) history[1] = not_a_number;
@@ -46,7 +69,7 @@ class FaultyJoint final : public Joint {
   }
 
  private:
-  enum Fault { throws, force, step, committed, event_rate, event_value, internal, field, channel };
+  enum Fault { throws, force, step, committed, event_rate, event_value, internal, field, channel, leap, limit };
   static constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
   static constexpr Channel channels[] = {{"wear", "1"}, {"heat", "J"}}, fields_[] = {{"size", "m"}};
   static constexpr Event events_[] = {{"alarm", Crossing::rising, 0, fields_}};
@@ -60,9 +83,11 @@ inline const Registry& types_with_faulty_joint() {
       {.name = "fault",
        .kind = ParameterKind::choice,
        .default_value = 0,
-       .choices = "throw|nan|step|commit|event-rate|event-value|internal|field|channel"}};
+       .choices = "throw|nan|step|commit|event-rate|event-value|internal|field|channel|leap|limit"}};
+  static constexpr Parameter time[] = {{.name = "at", .unit = "s"}};
   static const Component components[] = {
-      joint<FaultyJoint>({.name = "faulty", .space = Space::planar, .parameters = parameters})};
+      joint<FaultyJoint>({.name = "faulty", .space = Space::planar, .parameters = parameters}),
+      joint<FadingMemory>({.name = "fading", .space = Space::planar, .parameters = time})};
   static const Registry registry = [] {
     Registry all = Registry::with_builtins();
     all.add([](const Host* host,

@@ -142,6 +142,41 @@ TEST(FailedRun, NumbersOfAJointThatAreNotFiniteEndItAndAreNamed) {
   }
 }
 
+ModelRun run_puck(const std::string& joint, const std::string& settings) {
+  return ModelRun(
+      "freeplay: 1\nbodies: {puck: {mass: 1, inertia: 0.01, velocity: {linear: [1, 0]}}}\n"
+      "joints: {odd: {between: [ground, puck], at: 0.25, " +
+          joint + "}}\nsimulation: {end: 1 s, " + settings + "}\n",
+      {}, {}, types_with_faulty_joint());
+}
+
+// There are no constraints that could have lost rank.
+TEST(FailedRun, OfABodyWithoutConstraintsSaysWhyAsAnyOther) {
+  for (const char* settings : {"step: 1 ms", "accuracy: 1 um"}) {
+    const ModelRun run = run_puck("type: faulty, fault: leap", settings);
+    EXPECT_EQ(run.outcome().exit_code, 4);
+    EXPECT_THAT(run.outcome().reason, HasSubstr("energy would grow by 1e+06 J"));
+    EXPECT_EQ(run.outcome().reason.ends_with("accuracy in place of a step"), std::string(settings) == "step: 1 ms");
+  }
+}
+
+TEST(FailedRun, AJointThatAllowsNoLengthOfTimeEndsIt) {
+  const ModelRun run = run_puck("type: faulty, fault: limit", "accuracy: 1 um");
+  EXPECT_EQ(run.outcome().exit_code, 5);
+  EXPECT_THAT(run.outcome().reason, HasSubstr("joint 'odd' of type 'faulty'"));
+  EXPECT_THAT(run.outcome().reason, HasSubstr("the longest step that it allows is no length of time"));
+}
+
+// In steps that suit the body such a variable grows a thousandfold in each with a method that is not stable, and in
+// 0.25 s beyond all numbers.
+TEST(ErrorControl, KeepsAnInternalVariableThatMovesNothingYet) {
+  for (const char* integrator : {"dopri5", "verner7", "bathe", "generalized-alpha"}) {
+    const ModelRun run = run_puck("type: fading", std::string("accuracy: 1 um, integrator: ") + integrator);
+    EXPECT_EQ(run.outcome().status, RunStatus::completed) << integrator << ": " << run.outcome().reason;
+    EXPECT_NEAR(run.last("body.puck.vx"), 1.0 + 0.75 * 1e-2, 1e-5) << integrator;  // 1e3 N/m times z = 1e-5 m
+  }
+}
+
 // Four iterations for a stage are too few for long steps: they are halved until they converge, and counted.
 TEST(Recovery, StepsThatDoNotConvergeAreHalvedAndCounted) {
   const std::string text = pendulum(
