@@ -20,7 +20,7 @@ double distance(const Vector3& a, const Vector3& b) { return std::hypot(a[0] - b
 double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// The frames of a body, its origin among them only where something stands on it.
-struct Outline {
+struct FrameOutline {
   std::vector<Vector3> places{};
   Vector3 low{}, high{};   // of the box around them
   double reach = 0.0;      // largest distance from the centre of mass [m]
@@ -47,9 +47,9 @@ struct Outline {
 };
 
 /// By body, ground last.
-std::vector<Outline> outlines(const Draft& draft, bool all_origins) {
+std::vector<FrameOutline> outlines(const Draft& draft, bool all_origins) {
   const std::vector<Body>& bodies = draft.model.bodies;
-  std::vector<Outline> out(bodies.size() + 1);
+  std::vector<FrameOutline> out(bodies.size() + 1);
   for (const auto& [name, frame] : draft.frames) {
     if (name.ends_with("/com") && !draft.markers.contains(name)) continue;
     if (name.ends_with("/origin") && !draft.markers.contains(name) && (frame.body == ground || !all_origins)) continue;
@@ -73,14 +73,14 @@ double gyration_of(const Body& body, bool in_space) { return std::sqrt(largest_m
 
 /// Whether the reach of a body says how long it is: not of a rotor whose centre of mass is a little off its only frame
 /// and which is as heavy as a disc of its radius of gyration.
-bool is_length(const Outline& outline, double gyration, double mass) {
+bool is_length(const FrameOutline& outline, double gyration, double mass) {
   const double disc = 2.0 * std::numbers::pi * gyration * gyration;
   return outline.reach > 1e-12 &&
          (outline.places.size() > 1 || outline.reach > body_limit::arm * gyration || mass <= body_limit::sheet * disc);
 }
 
 /// Of bodies, then ground's.
-std::vector<double> sorted_reaches(const std::vector<Outline>& outlines, const Draft& draft) {
+std::vector<double> sorted_reaches(const std::vector<FrameOutline>& outlines, const Draft& draft) {
   const bool in_space = draft.model.space == Space::spatial;
   std::vector<double> reaches;
   for (std::size_t i = 0; i < outlines.size(); ++i) {
@@ -138,7 +138,7 @@ class BodyDoubts {
   /// Middle one of the others, for one that is among the longest.
   double scale_of_others() const { return reaches_.size() < 2 ? 0.0 : reaches_[(reaches_.size() - 2) / 2]; }
 
-  bool is_far(const Outline& outline) const {
+  bool is_far(const FrameOutline& outline) const {
     return scale_of_others() > 0.0 && outline.reach > bare_limit::length * scale_of_others();
   }
 
@@ -198,7 +198,7 @@ class BodyDoubts {
   /// A length without a unit that is far beyond those around it.
   bool judge_far_frame(std::size_t i) const { return is_far(outlines_[i]) && judge_length(outlines_[i], i); }
 
-  bool judge_length(const Outline& outline, std::optional<std::size_t> i) const {
+  bool judge_length(const FrameOutline& outline, std::optional<std::size_t> i) const {
     const auto frame = draft_.frames.find(outline.farthest);
     if (frame == draft_.frames.end()) return false;
     // The frame's own text, or the centre of mass where that is the far one.
@@ -223,7 +223,7 @@ class BodyDoubts {
   }
 
   bool judge_small_inertia(std::size_t i) const {
-    const Outline& outline = outlines_[i];
+    const FrameOutline& outline = outlines_[i];
     if (!(gyration_[i] > 0.0)) return false;
     const bool between =
         outline.places.size() > 1 && outline.outside(body(i).com) == 0.0 && outline.extent() > outline.reach;
@@ -279,7 +279,7 @@ class BodyDoubts {
   }
 
   bool judge_com(std::size_t i) const {
-    const Outline& outline = outlines_[i];
+    const FrameOutline& outline = outlines_[i];
     const double extent = outline.extent(), outside = outline.outside(body(i).com), k = gyration_[i];
     if (outline.places.size() < 2 || !(extent > 1e-12) || !(k > 0.0)) return false;
     if (outside <= body_limit::com_outside * extent || outside <= body_limit::com_outside_gyration * k) return false;
@@ -297,7 +297,7 @@ class BodyDoubts {
 
   // A rod has its least moment about the line of its joints.
   void judge_axis(std::size_t i) const {
-    const Outline& outline = outlines_[i];
+    const FrameOutline& outline = outlines_[i];
     const double extent = outline.extent();
     if (outline.places.size() < 2 || !(extent > 1e-12)) return;
     Vector3 along{};
@@ -339,7 +339,7 @@ class BodyDoubts {
 
   const Draft& draft_;
   bool in_space_;
-  std::vector<Outline> outlines_;
+  std::vector<FrameOutline> outlines_;
   std::vector<double> reaches_;
   std::vector<double> gyration_, density_;  // by body
   double usual_density_ = 0.0;
@@ -350,8 +350,11 @@ class BodyDoubts {
 }  // namespace
 
 double length_scale(const Draft& draft) {
-  const std::vector<double> reaches = sorted_reaches(outlines(draft, true), draft);
-  return reaches.empty() ? 0.0 : reaches[(reaches.size() - 1) / 2];
+  const std::vector<FrameOutline> all = outlines(draft, true);
+  const std::vector<double> reaches = sorted_reaches(all, draft);
+  if (!reaches.empty()) return reaches[(reaches.size() - 1) / 2];
+  // Where rotors alone turn in bearings on ground, the only frame has its origin as neighbour.
+  return all.back().places.size() == 1 ? 0.5 * distance(all.back().places.front(), {}) : 0.0;
 }
 
 void doubt_bodies(const Draft& draft) { BodyDoubts(draft).run(); }

@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t most_gears = 1000;  // that are looked at
 constexpr double one_stage = 100.0;       // ratio of a pair of wheels: a worm slows down by so much
 constexpr double turns_through = 2.0;     // to and fro after such a pair
+constexpr double most_speeding = 300.0;   // of a pair behind a motor: gears of wind turbines come to a hundred in all
 
 /// What a driver makes of the coordinate of a joint.
 struct Travel {
@@ -32,6 +33,7 @@ class GearDoubts {
 
   void run() {
     find_travels();
+    find_motors();
     const int gears = static_cast<int>(std::min(model_.gears.size(), most_gears));
     for (int g = 0; g < gears; ++g) judge(g);
   }
@@ -65,6 +67,25 @@ class GearDoubts {
     return true;
   }
 
+  /// Joints that a motor by torque turns, directly or through gears.
+  void find_motors() {
+    for (const Driver& driver : model_.drivers) {
+      if (!prescribes(driver.kind)) moved_.insert(driver.joint);
+    }
+    for (bool more = !moved_.empty() && model_.gears.size() <= most_gears; more;) {
+      more = false;
+      for (int g = 0; g < static_cast<int>(model_.gears.size()); ++g) {
+        const Gear& gear = model_.gears[static_cast<std::size_t>(g)];
+        const bool first = moved_.contains(gear.first), second = moved_.contains(gear.second);
+        if (first == second) continue;
+        const double by = std::abs(first ? gear.ratio : 1.0 / gear.ratio);
+        if (by > most_speeding && turns(gear.first) && turns(gear.second)) sped_up_[g] = by;
+        moved_.insert(first ? gear.second : gear.first);
+        more = true;
+      }
+    }
+  }
+
   void judge(int g) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(g)];
     const auto entry = entry_of(draft_, "joints", joint(gear.joint).name);
@@ -78,6 +99,12 @@ class GearDoubts {
       if (travel == travels_.end() || travel->second.through != g) continue;
       if (judge_speed(to, travel->second, *ratio)) return;
     }
+    const auto speeding = sped_up_.find(g);
+    if (speeding == sped_up_.end()) return;
+    ratio->warn("doubtful-value",
+                fmt::format("'{}' makes '{}' and '{}' turn by 1 to {:.4g}, and the motor is on the slow side: one pair "
+                            "of wheels changes speeds by up to ten; is the ratio meant the other way round?",
+                            ratio->path(), joint(gear.first).name, joint(gear.second).name, speeding->second));
   }
 
   /// Way of a slide by the angle that it is geared to, as a radius.
@@ -122,6 +149,8 @@ class GearDoubts {
   const Draft& draft_;
   const Model& model_;
   std::map<int, Travel> travels_;  // by joint
+  std::set<int> moved_;            // joints, by motors
+  std::map<int, double> sped_up_;  // by gear, index into Model::gears: so many times
   std::set<const Node*> judged_;
 };
 

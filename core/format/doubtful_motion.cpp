@@ -11,6 +11,7 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/motion_course.h"
+#include "model/rotation.h"
 
 namespace freeplay {
 namespace {
@@ -127,12 +128,33 @@ class MotionDoubts {
   /// A speed that no machine has, be its unit written or not. True after a message.
   bool doubt_peak(const Driver& driver, double speed, const CheckedValue& written) const {
     const bool turns = coordinate(driver) == Coordinate::angle;
+    if (turns && speed <= fastest_motion::turn) return doubt_rim(driver, speed, written);
     if (!(speed > (turns ? fastest_motion::turn : fastest_motion::slide))) return false;
     written.warn("doubtful-speed",
                  fmt::format("'{}' comes to {:.3g} {}, faster than any machine: check its numbers, its "
                              "times and their units",
                              written.path(), speed, turns ? "rad/s" : "m/s"));
     return true;
+  }
+
+  /// A body that is turned so fast that it would burst. True after a message.
+  bool doubt_rim(const Driver& driver, double speed, const CheckedValue& written) const {
+    const JointElement& joint = draft_.model.joints[static_cast<std::size_t>(driver.joint)];
+    for (const int marker : {joint.marker_a, joint.marker_b}) {
+      const BodyId b = draft_.model.markers[static_cast<std::size_t>(marker)].body;
+      if (b == ground) continue;
+      const Body& body = draft_.model.bodies[static_cast<std::size_t>(b)];
+      // In space any axis may be meant: the least moment is about it at least.
+      const double least = draft_.model.space == Space::spatial ? principal_moments(body.inertia)[0] : body.inertia[8];
+      const double rim = speed * std::sqrt(std::max(least, 0.0) / body.mass);
+      if (!(rim > fastest_motion::rim)) continue;
+      written.warn("doubtful-speed",
+                   fmt::format("'{}' comes to {:.3g} rad/s, where '{}' would turn with {:.3g} m/s at its radius of "
+                               "gyration and burst: check speed, mass and inertia and their units",
+                               written.path(), speed, body.name, rim));
+      return true;
+    }
+    return false;
   }
 
   /// A cubic that leaves its points far on one side, as after a short pulse.

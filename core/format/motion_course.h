@@ -10,6 +10,8 @@ namespace freeplay {
 namespace fastest_motion {
 inline constexpr double slide = 1e3;  ///< [m/s]
 inline constexpr double turn = 1e5;   ///< [rad/s]
+/// Of a body at its radius of gyration [m/s]: rings of steel burst at 400, flywheels of carbon fibre reach 1000.
+inline constexpr double rim = 1e3;
 }  // namespace fastest_motion
 
 /// What a prescribed motion does during the run.

@@ -55,11 +55,13 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     if (const double far = reached[at(b)]; far < unbounded && far > 0.0)
       reaches_.push_back({b, channels.bodies[at(b)], 1.0 / (far * far)});
   }
-  for (int b = 0; is_on_ground(model) && b < static_cast<int>(model.bodies.size()); ++b) {
+  const bool on_ground = is_on_ground(model);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
     const double moment = std::max({body.inertia[0], body.inertia[4], body.inertia[8]});
     const int first = channels.bodies[at(b)];
-    if (body.mass > 0.0) movers_.push_back({b, first + (planar_ ? 5 : 10), moment / body.mass});
+    const double gyration_squared = on_ground && body.mass > 0.0 ? moment / body.mass : 0.0;
+    movers_.push_back({b, first + (planar_ ? 3 : 7), planar_ ? 2 : 3, gyration_squared});
   }
   seen_.size = system.size();
 }
@@ -111,15 +113,23 @@ void RunWatch::add_places(std::span<const double> row) {
   seen_.beyond_reach = std::sqrt(farthest);
 }
 
-double RunWatch::Mover::rim_squared(std::span<const double> row, bool planar) const {
-  const double* w = &row[at(turn)];
-  return gyration_squared * (planar ? w[0] * w[0] : w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+double RunWatch::Mover::rim_squared(std::span<const double> row) const {
+  const double* w = &row[at(velocity + directions)];
+  return gyration_squared * (directions == 2 ? w[0] * w[0] : w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+}
+
+double RunWatch::Mover::speed_squared(std::span<const double> row) const {
+  const double* v = &row[at(velocity)];
+  return v[0] * v[0] + v[1] * v[1] + (directions == 2 ? 0.0 : v[2] * v[2]);
 }
 
 void RunWatch::add_speeds(std::span<const double> row) {
   runaway_ = -1;
   for (const Mover& mover : movers_) {
-    if (mover.rim_squared(row, planar_) > trust::fastest_rim * trust::fastest_rim) runaway_ = mover.body;
+    if (mover.rim_squared(row) > trust::fastest_rim * trust::fastest_rim ||
+        mover.speed_squared(row) > trust::speed_of_light * trust::speed_of_light) {
+      runaway_ = mover.body;
+    }
   }
 }
 
@@ -211,7 +221,13 @@ TrustReason RunWatch::why_runaway(std::span<const double> row) const {
   const auto mover = std::ranges::find(movers_, runaway_, &Mover::body);
   TrustReason reason{.id = "body-speed", .level = Trust::bad, .message = {}};
   reason.element = fmt::format("body '{}'", system_.model().bodies[at(runaway_)].name);
-  reason.value = std::sqrt(mover->rim_squared(row, planar_)), reason.limit = trust::fastest_rim;
+  if (const double speed = std::sqrt(mover->speed_squared(row)); speed > trust::speed_of_light) {
+    reason.value = speed, reason.limit = trust::speed_of_light;
+    reason.message = fmt::format("{} at t = {:.9g} s: it moves with {:.3g} m/s, faster than light", reason.element,
+                                 row[at(channels_.time)], speed);
+    return reason;
+  }
+  reason.value = std::sqrt(mover->rim_squared(row)), reason.limit = trust::fastest_rim;
   reason.message = fmt::format(
       "{} at t = {:.9g} s: it turns with {:.3g} m/s at its radius of gyration, more than twice the speed of sound in "
       "steel",

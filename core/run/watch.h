@@ -23,6 +23,7 @@ inline constexpr double ideal_strength = 0.1;
 /// Speed at the radius of gyration of a body that turns [m/s]: twice that of sound in steel. What turns so fast bursts:
 /// the stress in a ring is its density times the square of its speed.
 inline constexpr double fastest_rim = 1e4;
+inline constexpr double speed_of_light = 299792458.0;  ///< [m/s]
 }  // namespace trust
 
 /// The largest force of rows in some part of a motion.
@@ -184,9 +185,10 @@ class RunWatch {
   };
   std::vector<Reach> reaches_;
   struct Mover {
-    int body, turn;           // a column
-    double gyration_squared;  // [m^2]
-    double rim_squared(std::span<const double> row, bool planar) const;
+    int body, velocity, directions;  // the first column of its velocity; after so many that of its turning comes
+    double gyration_squared;         // [m^2]; 0: it may turn as fast as it likes
+    double rim_squared(std::span<const double> row) const;
+    double speed_squared(std::span<const double> row) const;
   };
   std::vector<Mover> movers_;
   int runaway_ = -1;

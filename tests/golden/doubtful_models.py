@@ -78,6 +78,20 @@ joints:
 drivers: {motor: {joint: a, kind: velocity, value: 10}}
 simulation: {end: 0.1, step: 1e-3}
 """
+# A belt between a motor and a fan.
+BELT = """freeplay: 1
+bodies:
+  motor: {mass: 4, inertia: 8e-3}
+  fan: {mass: 10, inertia: 0.4}
+frames: {ground/fan: [0.5, 0.1]}
+joints:
+  motor: {type: revolute, between: [ground, motor]}
+  fan: {type: revolute, between: [ground/fan, fan]}
+forces:
+  belt: {type: belt, between: [motor, fan], first_radius: 0.05, second_radius: 0.12, stiffness: 2e5, damping: 100, pretension: 300}
+drivers: {motor: {joint: motor, kind: torque, value: 5}}
+simulation: {end: 0.1, step: 1e-3}
+"""
 # A wheel and a slide that it moves.
 RACK = """freeplay: 1
 bodies:

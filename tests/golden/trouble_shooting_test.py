@@ -65,6 +65,11 @@ simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
 """
 NO_STEP = PENDULUM.replace("{pivot: 0 deg}", "{pivot: 0 deg}, speeds: {pivot: 1e7 rad/s}").replace(
     "mass: 1 kg, inertia: 1 kg*m^2 / 12, com: [0.5 m, 0], frames: {tip: [1 m, 0]}", "mass: 1 g, inertia: 0.1 g*mm^2, com: [5 mm, 0]")
+PUSHED = """freeplay: 1
+bodies: {puck: {mass: 1 kg, inertia: 0.01, velocity: {linear: [1 m/s, 0]}}}
+forces: {push: {type: force, at: puck, value: ["1e6 N*s/m*body.puck.vx", 0]}}
+simulation: {end: 1 s, accuracy: 1 um}
+"""
 IN_LINE = SHORT_ROD.replace("drivers: {motor: {joint: pivot, kind: angle, value: 10*t}}", "initial: {joints: {guide: 1.2 m}}").replace(
     "frames: {tip: [1 m, 0]}", "frames: {tip: [1 m, 0]}, pose: {angle: 0}")
 with open(os.path.join(ROOT, "mechanisms", "validation", "a02-chain.yaml"), encoding="utf-8") as chain:
@@ -235,6 +240,8 @@ CASES = {
         (4, journal("E: 207 GPa", "E: 207 Pa").replace("end: 20 ms", "end: 1 s"), RUN),
     "body '...' at t = ... s: it turns with ... m/s at its radius of gyration, more than twice the speed of sound in steel; likely cause: ...":
         (4, driven("kind: angle, value: t", "kind: torque, value: 1e9"), RUN),
+    "body '...' at t = ... s: it moves with ... m/s, faster than light...":
+        (4, PUSHED, RUN),
     "energy would grow by ... J in a step of ... s, more than everything that acts could put in; ...":
         (4, journal("E: 207 GPa", "E: 207e22 GPa").replace("lankarani-nikravesh, restitution: 0.9", "hertz"), RUN),
     "forces and speeds grow beyond all bounds, ...":
