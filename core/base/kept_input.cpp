@@ -61,6 +61,14 @@ std::vector<std::string> kept_libraries(const std::string& model_file) {
   return files;
 }
 
+std::string kept_model(const std::string& folder) {
+  std::error_code ignored;
+  for (const char* name : {"model.urdf", "model.xml"}) {
+    if (fs::exists(fs::path(folder) / name, ignored)) return (fs::path(folder) / name).string();
+  }
+  return (fs::path(folder) / "model.yaml").string();
+}
+
 std::string kept_model_name(const std::string& model_file) {
   if (fs::path(model_file).stem() != "model") return {};
   const Json record = record_beside_model(model_file);

@@ -22,7 +22,10 @@ std::vector<std::string> kept_libraries(const std::string& model_file);
 /// Where they stand, from the folder of the model.
 inline constexpr const char* libraries_folder = "plugins";
 
-/// Name of the model whose copy, model.yaml or model.urdf, stands in the result of a run; empty for another file.
+/// The copy of the model in the result of a run: model.urdf or model.xml, else model.yaml, whether it is there or not.
+std::string kept_model(const std::string& folder);
+
+/// Name of the model whose copy stands in the result of a run; empty for another file.
 std::string kept_model_name(const std::string& model_file);
 
 /// Files of the plugins that the run was made with in whose result `model_file` stands, as they were called there.

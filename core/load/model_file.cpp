@@ -7,14 +7,15 @@
 #include <fmt/format.h>
 
 #include "base/input_text.h"
-#include "urdf/document.h"
+#include "base/kept_input.h"
+#include "load/robot_file.h"
 #include "urdf/sidecar.h"
 #include "yaml/document.h"
 
 namespace freeplay {
 namespace {
 
-/// Root of the model that a URDF file alone stands for.
+/// Root of the model that a robot file alone stands for.
 void set_root_of_robot(Document& document, const urdf::Sections& sections) {
   Node& root = document.add(Node::Kind::map, 1, 1);
   const auto scalar = [&](const char* text) -> Node& {
@@ -26,7 +27,9 @@ void set_root_of_robot(Document& document, const urdf::Sections& sections) {
   put("freeplay", scalar("1"));
   if (!sections.plane) put("space", scalar("spatial"));
   // Down is -z in URDF; in the plane xy nothing of it is left.
-  if (sections.plane != urdf::Options::Plane::xy) {
+  if (sections.gravity != nullptr) {
+    put("gravity", *sections.gravity);
+  } else if (sections.plane != urdf::Options::Plane::xy) {
     Node& gravity = document.add(Node::Kind::list, 1, 1);
     gravity.items = {&scalar("0"), &scalar("-9.81")};
     if (!sections.plane) gravity.items.insert(gravity.items.begin(), &scalar("0"));
@@ -67,7 +70,7 @@ std::optional<Document> parse_robot(std::string text, const std::string& file_na
   urdf::Options options;
   options.space = urdf::Options::Space::by_robot;
   options.plane.reset();
-  const auto sections = urdf::add_sections(document.text(), &document.file_name(), options, document, diagnostics);
+  const auto sections = add_robot_sections(document.text(), &document.file_name(), options, document, diagnostics);
   if (!sections) return std::nullopt;
   set_root_of_robot(document, *sections);
   return document;
@@ -77,11 +80,15 @@ std::optional<Document> parse_robot(std::string text, const std::string& file_na
 
 bool is_urdf(const std::string& file_name) { return std::filesystem::path(file_name).extension() == ".urdf"; }
 
+bool is_robot(const std::string& file_name) {
+  return is_urdf(file_name) || std::filesystem::path(file_name).extension() == ".xml";
+}
+
 std::optional<Document> parse_model(std::string text, const std::string& file_name, Diagnostics& diagnostics) {
-  if (is_urdf(file_name)) return parse_robot(std::move(text), file_name, diagnostics);
+  if (is_robot(file_name)) return parse_robot(std::move(text), file_name, diagnostics);
   std::optional<Document> document = parse_yaml(std::move(text), file_name, diagnostics);
   if (document && document->root().is_map() && document->root().find("urdf") != nullptr) {
-    if (!add_robot(*document, diagnostics)) leave_robot_out(*document);
+    if (!add_robot(*document, add_robot_sections, diagnostics)) leave_robot_out(*document);
   }
   return document;
 }
@@ -90,11 +97,9 @@ std::optional<Document> read_model(const std::string& file_name, Diagnostics& di
   std::string text;
   if (const std::string why = read_input(file_name, text); !why.empty()) {
     std::string hint;
-    for (const char* name : {"model.yaml", "model.urdf"}) {
-      const std::filesystem::path inside = std::filesystem::path(file_name) / name;
-      std::error_code ignored;
-      if (hint.empty() && std::filesystem::exists(inside, ignored)) hint = "its model is '" + inside.string() + "'";
-    }
+    std::error_code ignored;
+    const std::string inside = kept_model(file_name);
+    if (std::filesystem::exists(inside, ignored)) hint = "its model is '" + inside + "'";
     diagnostics.error({file_name, 0, 0}, 1, "file-not-found", fmt::format("cannot read '{}': {}", file_name, why), {},
                       hint);
     return std::nullopt;

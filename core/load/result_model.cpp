@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/json_text.h"
+#include "base/kept_input.h"
 #include "load/load.h"
 
 namespace freeplay {
@@ -37,10 +38,10 @@ ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOpt
   std::error_code ignored;
   const fs::path folder = path;
   if (!fs::is_directory(folder, ignored)) return {};
-  const fs::path yaml = folder / "model.yaml", urdf = folder / "model.urdf";
+  const std::string file = kept_model(path);
   if (!summary.is_object() || !summary.contains("settings")) no_result(path, "summary.json of a run");
-  if (!fs::exists(yaml, ignored) && !fs::exists(urdf, ignored)) no_result(path, "model.yaml or model.urdf");
-  path = (fs::exists(yaml, ignored) ? yaml : urdf).string();
+  if (!fs::exists(file, ignored)) no_result(path, "model.yaml, model.urdf or model.xml");
+  path = file;
   const Json& settings = summary["settings"];
   use_settings(settings, build);
   return {text(summary.value("model", Json::object()), "name"),
@@ -49,8 +50,7 @@ ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOpt
 
 std::unique_ptr<Model> model_beside(const fs::path& folder, const Json& summary, const LoadOptions& options) {
   std::error_code ignored;
-  const bool urdf = fs::exists(folder / "model.urdf", ignored);
-  const fs::path file = folder / (urdf ? "model.urdf" : "model.yaml");
+  const fs::path file = kept_model(folder.string());
   if (!fs::exists(file, ignored)) return nullptr;
   BuildOptions build;
   if (summary.is_object() && summary.contains("settings")) use_settings(summary["settings"], build);

@@ -59,7 +59,7 @@ std::unique_ptr<AssembledModel> OpenedModel::assemble(Diagnostics& diagnostics) 
 
 OpenRequest OpenedModel::same_text() const {
   OpenRequest request = request_;
-  if (!is_urdf(request.file)) request.text = model().text;  // whatever the file has become
+  if (!is_robot(request.file)) request.text = model().text;  // whatever the file has become
   return request;
 }
 

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "base/sha256.h"
 #include "base/shell_word.h"
 #include "load/result_model.h"
@@ -87,8 +88,7 @@ void read_inputs(ReportedRun& run, const fs::path& folder) {
 /// The model in the directory, else that in the file of results.
 void read_model(ReportedRun& run, const fs::path& folder, const LoadOptions& options) {
   std::error_code ignored;
-  const bool urdf = fs::exists(folder / "model.urdf", ignored);
-  const fs::path file = folder / (urdf ? "model.urdf" : "model.yaml");
+  const fs::path file = kept_model(folder.string());
   const bool beside = fs::exists(file, ignored);
   run.model_text = beside ? text_of(file) : attribute(*run.reader, "model");
   if (run.model_text.empty()) return;

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "base/version.h"
 #include "results/checkpoint.h"
 #include "results/schema.h"
@@ -72,9 +73,7 @@ Json record_of_directory(const fs::path& folder) {
   if (!is_record(record)) record = record_of_rows(folder);
   if (!is_record(record)) record = made_of_checkpoint(folder).value("provenance", Json());
   if (!is_record(record)) return nullptr;
-  std::error_code ignored;
-  record["model"]["text"] =
-      text_of(fs::exists(folder / "model.urdf", ignored) ? folder / "model.urdf" : folder / "model.yaml");
+  record["model"]["text"] = text_of(kept_model(folder.string()));
   for (Json& input : record["inputs"]) {
     if (!input.is_object() || !input.value("name", Json()).is_string()) continue;
     // No more than a name, whatever a record from elsewhere says.

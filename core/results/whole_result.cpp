@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "base/input_text.h"
+#include "base/kept_input.h"
 #include "base/sha256.h"
 #include "results/kept_part.h"
 #include "results/row_hash.h"
@@ -105,8 +106,7 @@ std::string missing_events(const fs::path& directory) {
 }  // namespace
 
 std::optional<ChangedSource> changed_source(const fs::path& directory, const Json& record) {
-  const fs::path urdf = directory / "model.urdf";
-  const fs::path model = is_file(urdf) ? urdf : directory / "model.yaml";
+  const fs::path model = kept_model(directory.string());
   if (!record.is_object()) return std::nullopt;
   if (auto changed = changed_file(model, "the model", field(record, "/model/sha256"))) return changed;
   for (const Json& input : record.value("inputs", Json::array())) {

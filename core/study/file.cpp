@@ -35,7 +35,7 @@ constexpr std::array reserved_columns = {"index", "model", "direction", "sample"
 constexpr std::size_t most_fitting = 10'000;  // axes of one pattern
 
 std::string model_copy(std::size_t number, const std::string& file) {
-  return fmt::format("inputs/{}/model{}", number, is_urdf(file) ? ".urdf" : ".yaml");
+  return fmt::format("inputs/{}/model{}", number, is_robot(file) ? fs::path(file).extension().string() : ".yaml");
 }
 
 std::string table_copy(std::size_t axis) { return fmt::format("inputs/table{}.csv", axis); }

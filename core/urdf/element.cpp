@@ -101,14 +101,21 @@ Spot begin_spot(const XmlElement& element) {
   return {place.line, place.column, character_count(element.Name()) + 1};
 }
 
+std::string Messages::id_of(std::string id) const {
+  constexpr std::string_view own = "urdf";
+  const std::size_t at = id.find(own);
+  return at == std::string::npos ? id : id.replace(at, own.size(), format_);
+}
+
 void Messages::error(const Spot& spot, const char* id, std::string message, std::string suggestion, std::string hint) {
   ++errors_;
-  diagnostics_.error({file_, spot.line, spot.column}, spot.length, id, std::move(message), std::move(suggestion),
+  diagnostics_.error({file_, spot.line, spot.column}, spot.length, id_of(id), std::move(message), std::move(suggestion),
                      std::move(hint));
 }
 
 void Messages::warning(const Spot& spot, const char* id, std::string message, std::string hint) {
-  diagnostics_.warning({file_, spot.line, spot.column}, spot.length, id, std::move(message), {}, std::move(hint));
+  diagnostics_.warning({file_, spot.line, spot.column}, spot.length, id_of(id), std::move(message), {},
+                       std::move(hint));
 }
 
 void Messages::ignore(const std::string& what, const std::string& name) {
@@ -210,27 +217,38 @@ std::optional<Eigen::Vector3d> Element::vector(const std::string& name, const ch
 }
 
 std::vector<double> Element::numbers(const std::string& name, std::size_t count, const char* guess) {
+  return numbers(name, count, count, guess);
+}
+
+std::vector<double> Element::numbers(const std::string& name, std::size_t least, std::size_t most, const char* guess) {
+  constexpr const char* few[] = {"no", "one", "two", "three", "four", "five", "six", "seven"};
   const XmlAttribute* attribute = find(name);
   if (attribute == nullptr) return {};
   const std::string_view value = attribute->Value();
   const std::vector<std::string_view> words = split(value);
-  if (words.size() != count) {
+  std::vector<double> read;
+  if (words.size() < least || words.size() > most) {
     const bool comma = value.find(',') != std::string_view::npos;
-    messages_.error(
-        spot_of(xml_, *attribute), "bad-urdf",
-        fmt::format("'{}' of {} must be {} numbers, not {}", name, owner_, count == 3 ? "three" : "four", words.size()),
-        {}, comma ? "numbers are separated by blanks, not by commas" : "");
-    guesses_.emplace_back(name, guess);
-    return {};
+    const std::string wanted = least == most ? few[most] : fmt::format("{} to {}", few[least], few[most]);
+    messages_.error(spot_of(xml_, *attribute), "bad-urdf",
+                    fmt::format("'{}' of {} must be {} numbers, not {}", name, owner_, wanted, words.size()), {},
+                    comma ? "numbers are separated by blanks, not by commas" : "");
+  } else {
+    read = parse_all(*attribute, words);
   }
+  if (read.empty()) guesses_.emplace_back(name, guess);
+  return read;
+}
+
+/// Empty after a message.
+std::vector<double> Element::parse_all(const XmlAttribute& attribute, const std::vector<std::string_view>& words) {
   std::vector<double> read;
   for (const std::string_view word : words) {
     std::string why, hint;
     const auto number = read_number(word, why, hint);
     if (!number) {
-      messages_.error(spot_of(xml_, *attribute), "bad-urdf", fmt::format("'{}' of {}: {}", name, owner_, why), {},
-                      hint);
-      guesses_.emplace_back(name, guess);
+      messages_.error(spot_of(xml_, attribute), "bad-urdf",
+                      fmt::format("'{}' of {}: {}", attribute.Name(), owner_, why), {}, hint);
       return {};
     }
     read.push_back(*number);

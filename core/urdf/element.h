@@ -29,7 +29,9 @@ Spot begin_spot(const XmlElement& element);
 /// Where messages about one file go.
 class Messages {
  public:
-  Messages(std::string file, Diagnostics& diagnostics) : file_(std::move(file)), diagnostics_(diagnostics) {}
+  /// `format` stands in the ids in place of `urdf`.
+  Messages(std::string file, Diagnostics& diagnostics, std::string format = "urdf")
+      : file_(std::move(file)), diagnostics_(diagnostics), format_(std::move(format)) {}
 
   void error(const Spot& spot, const char* id, std::string message, std::string suggestion = {}, std::string hint = {});
   void warning(const Spot& spot, const char* id, std::string message, std::string hint = {});
@@ -44,8 +46,11 @@ class Messages {
   void report_ignored(const Spot& spot);
 
  private:
+  std::string id_of(std::string id) const;
+
   std::string file_;
   Diagnostics& diagnostics_;
+  std::string format_;
   int errors_ = 0;
   int suggested_ = 0;
   std::vector<std::pair<std::string, std::vector<std::string>>> ignored_;  ///< kinds and the names of each
@@ -83,8 +88,10 @@ class Element {
   double number(const std::string& name, double standard);
   std::optional<double> required_number(const std::string& name, const char* guess = "0");
   std::optional<Eigen::Vector3d> vector(const std::string& name, const char* guess = "0 0 0");
-  /// `count` (3 or 4) numbers; empty when they are not there or, after a message, when they are not that.
+  /// `count` numbers; empty when they are not there or, after a message, when they are not that.
   std::vector<double> numbers(const std::string& name, std::size_t count, const char* guess = "");
+  /// From `least` to `most` of them, likewise.
+  std::vector<double> numbers(const std::string& name, std::size_t least, std::size_t most, const char* guess);
 
   /// Warns `doubtful-angle` of one beyond a turn that is no multiple of pi.
   void doubt_turns(const Eigen::Vector3d& rpy);
@@ -92,6 +99,8 @@ class Element {
   /// The child of that name. A second one is reported, and so is an absent one at the '<' of this element.
   XmlElement* child(const std::string& name);
   XmlElement* required_child(const std::string& name);
+  /// Children of which there may be any number, and which are read elsewhere.
+  void know(const std::string& name) { children_.push_back(name); }
   /// Children that are known and not used: counted.
   void pass_over(const std::string& name);
 
@@ -103,6 +112,7 @@ class Element {
   void finish_attributes();
   void finish_children();
   std::optional<double> parse(const XmlAttribute& attribute);
+  std::vector<double> parse_all(const XmlAttribute& attribute, const std::vector<std::string_view>& words);
 
   XmlElement& xml_;
   std::string owner_;

@@ -3,6 +3,24 @@
 #include "base/index.h"
 
 namespace freeplay::urdf {
+
+MassProperties together(const std::vector<MassProperties>& parts) {
+  if (parts.size() == 1) return parts.front();
+  MassProperties body;
+  if (parts.empty()) return body;
+  for (const MassProperties& part : parts) {
+    body.mass += part.mass;
+    body.com += part.mass * part.com;
+  }
+  body.com /= body.mass;
+  for (const MassProperties& part : parts) {
+    const Eigen::Vector3d arm = part.com - body.com;
+    body.inertia +=
+        part.inertia + part.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
+  }
+  return body;
+}
+
 std::vector<MassProperties> body_masses(const Robot& robot, const std::vector<Mount>& mounts) {
   std::vector<std::vector<MassProperties>> parts(robot.links.size());
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
@@ -12,22 +30,8 @@ std::vector<MassProperties> body_masses(const Robot& robot, const std::vector<Mo
     parts[at(mounts[i].body)].push_back(
         {link.mass, frame.translation(), frame.linear() * link.inertia * frame.linear().transpose()});
   }
-  std::vector<MassProperties> bodies(robot.links.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (parts[i].size() == 1) bodies[i] = parts[i].front();
-    if (parts[i].size() <= 1) continue;
-    MassProperties& body = bodies[i];
-    for (const MassProperties& part : parts[i]) {
-      body.mass += part.mass;
-      body.com += part.mass * part.com;
-    }
-    body.com /= body.mass;
-    for (const MassProperties& part : parts[i]) {
-      const Eigen::Vector3d arm = part.com - body.com;
-      body.inertia +=
-          part.inertia + part.mass * (arm.squaredNorm() * Eigen::Matrix3d::Identity() - arm * arm.transpose());
-    }
-  }
+  std::vector<MassProperties> bodies;
+  for (const std::vector<MassProperties>& of_body : parts) bodies.push_back(together(of_body));
   return bodies;
 }
 

@@ -13,6 +13,9 @@ struct MassProperties {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();  ///< about the centre of mass, axes of the body frame [kg m^2]
 };
 
+/// All parts as one, about its own centre of mass; zero where there are none.
+MassProperties together(const std::vector<MassProperties>& parts);
+
 /// Of each link that is a body, together with what is part of it by `mounts`; zero for the others.
 std::vector<MassProperties> body_masses(const Robot& robot, const std::vector<Mount>& mounts);
 

@@ -112,7 +112,7 @@ class Projector {
       return;
     }
     see(parent);
-    const Eigen::Isometry3d upright_zero = mount(joint.parent.link).pose * joint.parent.frame * here.pose.inverse();
+    const Eigen::Isometry3d upright_zero = mount(joint.parent.link).pose * joint.child_pose() * here.pose.inverse();
     out_.poses[at(link)] = carrier * flat(seen(upright_zero, axes_));
   }
 
@@ -124,8 +124,8 @@ class Projector {
       mount_of_link.pose = out_.mounts[at(mount_of_link.body)].pose * mount_of_link.pose;
       return;
     }
-    const Frame zero = seen(mount(joint.parent.link).pose * joint.parent.frame, axes_);
-    const Eigen::Matrix3d turn = upright(zero.turn, axes_ * joint.axis, joint.type);
+    const Frame zero = seen(mount(joint.parent.link).pose * joint.child_pose(), axes_);
+    const Eigen::Matrix3d turn = upright(zero.turn, axes_ * (joint.child.frame.linear() * joint.axis), joint.type);
     if (turn.isIdentity(0.0)) return;
     mount_of_link.pose.linear() = axes_.transpose() * turn.transpose() * axes_;
     out_.tilted_frames.push_back(robot_.links[at(link)].name);

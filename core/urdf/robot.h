@@ -1,4 +1,4 @@
-// UrdfRobot: what a URDF file says, checked piece by piece, with the places where it says it.
+// UrdfRobot: what a robot file says, URDF or another, checked piece by piece, with the places where it says it.
 #pragma once
 
 #include <array>
@@ -52,7 +52,9 @@ struct End {
   Spot spot, frame_spot;                                    ///< of the link's name and of the origin
 };
 
-enum class JointType { revolute, prismatic, fixed, floating, planar };
+/// URDF has the first five. Frames of a universal joint have the axis of the parent as x and that of the child as y,
+/// those of a cylindrical one its axis as z.
+enum class JointType { revolute, prismatic, fixed, floating, planar, spherical, universal, cylindrical };
 
 struct Mimic {
   std::string joint;  ///< the leading one
@@ -82,6 +84,9 @@ struct Joint {
   Spot damping_spot;
   double friction = 0.0;  ///< [N m or N]
   Spot friction_spot;
+  double stiffness = 0.0;  ///< of a spring [N m/rad or N/m]
+  double slack_at = 0.0;   ///< coordinate at which it is slack [rad or m]
+  Spot stiffness_spot;
   std::optional<Limits> limits;
   double reach = 0.0;  ///< of a slide: the larger limit [m]
   std::optional<Mimic> mimic;
@@ -89,8 +94,14 @@ struct Joint {
   bool closed_at_zero = false;  ///< the parent's frame stands where the child's is when all coordinates are zero
   bool axis_in_world = false;   ///< with closed_at_zero: `axis` is in axes of the root link
 
+  /// Of the child's frame in that of the parent, at coordinate zero.
+  Eigen::Isometry3d child_pose() const { return parent.frame * child.frame.inverse(); }
   bool moves() const { return type != JointType::fixed; }
   bool turns() const { return type == JointType::revolute; }
+  /// Has it freedoms that only a spatial model knows?
+  bool is_spatial() const {
+    return type == JointType::spherical || type == JointType::universal || type == JointType::cylindrical;
+  }
   bool has_coordinate() const { return type == JointType::revolute || type == JointType::prismatic; }
   bool has_axis() const { return has_coordinate() || type == JointType::planar; }
 };

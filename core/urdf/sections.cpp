@@ -18,6 +18,7 @@ class Writer {
       : robot_(robot), options_(options), view_(view), nodes_(nodes), messages_(messages), names_(names) {}
 
   Sections write(std::optional<Options::Plane> plane) {
+    planar_ = plane.has_value();
     write_bodies();
     joint_section_ = &nodes_.map(robot_.spot);
     force_section_ = &nodes_.map(robot_.spot);
@@ -29,7 +30,7 @@ class Writer {
     }
     for (std::size_t i = 0; i < robot_.joints.size(); ++i) write_mimic(i);
     append_frames();
-    return {bodies_, joint_section_, force_section_, plane};
+    return {bodies_, joint_section_, force_section_, plane, nullptr};
   }
 
  private:
@@ -125,12 +126,12 @@ class Writer {
     nodes_.put(entry, "between", ends(joint, name, name), joint.spot);
     if (const Node* axis = view_.axis(number)) nodes_.put(entry, "axis", *axis, joint.axis_spot);
     nodes_.put(*joint_section_, name, entry, joint.spot);
-    if (joint.damping > 0.0 && joint.has_coordinate()) write_damper(number);
+    if ((joint.damping > 0.0 || joint.stiffness > 0.0) && joint.has_coordinate()) write_spring_damper(number);
     if (joint.friction > 0.0 && joint.has_coordinate()) write_friction(number);
     if (joint.limits && options_.stops) write_stop(number);
   }
 
-  static const char* type_word(JointType type) {
+  const char* type_word(JointType type) const {
     switch (type) {
       case JointType::revolute:
         return "revolute";
@@ -138,6 +139,12 @@ class Writer {
         return "prismatic";
       case JointType::planar:
         return "planar";
+      case JointType::spherical:  // in the plane a point that is held is a pin
+        return planar_ ? "revolute" : "spherical";
+      case JointType::universal:
+        return "universal";
+      case JointType::cylindrical:
+        return "cylindrical";
       default:
         return "fixed";
     }
@@ -149,16 +156,26 @@ class Writer {
                        joint.spot);
   }
 
-  void write_damper(int index) {
+  /// A spring is slack where the file says; `-damping` is one without stiffness.
+  void write_spring_damper(int index) {
     const Joint& joint = robot_.joints[at(index)];
-    const Spot& spot = joint.damping_spot;
-    const std::string damper = names_.joints[at(index)] + "-damping";
+    const bool has_spring = joint.stiffness > 0.0;
+    const Spot& spot = has_spring ? joint.stiffness_spot : joint.damping_spot;
+    const std::string name = names_.joints[at(index)] + (has_spring ? "-spring" : "-damping");
     Node& entry = nodes_.map(spot);
     nodes_.put(entry, "type", nodes_.scalar("spring-damper", spot), spot);
     nodes_.put(entry, "kind", nodes_.scalar(joint.turns() ? "rotational" : "linear", spot), spot);
-    nodes_.put(entry, "between", joint.turns() ? axis_ends(index) : line_ends(index, damper), spot);
-    nodes_.put(entry, "damping", nodes_.number(joint.damping, spot), spot);
-    nodes_.put(*force_section_, damper, entry, spot);
+    nodes_.put(entry, "between", joint.turns() ? axis_ends(index) : line_ends(index, name), spot);
+    if (has_spring) {
+      nodes_.put(entry, "stiffness", nodes_.number(joint.stiffness, spot), spot);
+      const double slack =
+          joint.turns() ? view_.sign(index) * joint.slack_at + 0.0 : 1.0 + joint.reach + joint.slack_at;
+      nodes_.put(entry, joint.turns() ? "free_angle" : "free_length", nodes_.number(slack, spot), spot);
+    }
+    if (joint.damping > 0.0) {
+      nodes_.put(entry, "damping", nodes_.number(joint.damping, joint.damping_spot), joint.damping_spot);
+    }
+    nodes_.put(*force_section_, name, entry, spot);
   }
 
   void write_friction(int index) {
@@ -242,6 +259,7 @@ class Writer {
   Node* ground_ = nullptr;
   Node* joint_section_ = nullptr;
   Node* force_section_ = nullptr;
+  bool planar_ = false;
   std::vector<Node*> body_nodes_, frame_nodes_;  ///< of each link; frames of ground last
   std::map<int, std::string> axis_frames_;       ///< of joints: frames whose own axis is the joint's
 };

@@ -13,7 +13,6 @@
 #include "format/map_reader.h"
 #include "format/name_rule.h"
 #include "format/parameter_scope.h"
-#include "urdf/document.h"
 
 namespace freeplay {
 namespace {
@@ -97,6 +96,9 @@ class Merger {
     if (!sections.plane && root.find("space") == nullptr) {
       root.entries.push_back({&word("space"), &word("spatial")});
     }
+    if (sections.gravity != nullptr && root.find("gravity") == nullptr) {
+      root.entries.push_back({&word("gravity"), sections.gravity});
+    }
     merge_section(root, "bodies", *sections.bodies, {"frames", "pose", "velocity"});
     merge_section(root, "joints", *sections.joints, {"clearance"});
     merge_section(root, "forces", *sections.forces, {});
@@ -141,7 +143,7 @@ class Merger {
   const Node* extend(const Node& robot, const Node::Entry& added, const std::string& section, const Words& allowed) {
     const std::string path = section + "." + added.key->text;
     if (allowed.empty() || !added.value->is_map()) {
-      report(*added.key, "duplicate-name", fmt::format("'{}' comes from the URDF file already", path), {});
+      report(*added.key, "duplicate-name", fmt::format("'{}' comes from the robot file already", path), {});
       return &robot;
     }
     Node& both = document_.add(Node::Kind::map, robot.line, robot.column);
@@ -152,7 +154,7 @@ class Merger {
       const bool note = is_note(entry.key->text);
       if (!note && std::ranges::find(allowed, entry.key->text) == allowed.end() && added.key->text != "ground") {
         report(*entry.key, "unknown-key",
-               fmt::format("'{}' comes from the URDF file; the key '{}' cannot be added", path, entry.key->text),
+               fmt::format("'{}' comes from the robot file; the key '{}' cannot be added", path, entry.key->text),
                fmt::format("only {}", either(allowed)));
         continue;
       }
@@ -187,7 +189,7 @@ class Merger {
 
 }  // namespace
 
-bool add_robot(Document& document, Diagnostics& diagnostics) {
+bool add_robot(Document& document, RobotReader read, Diagnostics& diagnostics) {
   UsedKeys used;
   const ParameterScope scope(used);
   const Reading reading{&diagnostics, &scope};
@@ -198,7 +200,7 @@ bool add_robot(Document& document, Diagnostics& diagnostics) {
   if (!section.readable()) return false;
   diagnostics.add_source(section.path, section.text);
   const std::string* file = document.add_file(section.path, section.text);
-  const auto sections = urdf::add_sections(section.text, file, section.options, document, diagnostics);
+  const auto sections = read(section.text, file, section.options, document, diagnostics);
   if (!sections) return false;
   Merger(document, diagnostics).merge(*sections);
   return true;

@@ -88,8 +88,8 @@ class SpatialView final : public View {
     poses_[at(link)].setIdentity();
     const int parent = robot_.parent_joint[at(link)];
     if (parent < 0) return;
-    const End& carrier = robot_.joints[at(parent)].parent;
-    poses_[at(link)] = poses_[at(carrier.link)] * carrier.frame;
+    const Joint& joint = robot_.joints[at(parent)];
+    poses_[at(link)] = poses_[at(joint.parent.link)] * joint.child_pose();
   }
 
   Seen seen(const Joint& joint) const {

@@ -128,7 +128,7 @@ class TreeBuilder {
     const Joint& parent = joint(robot_.parent_joint[at(index)]);
     if (!parent.moves() && (!here.has_mass() || options_.merge_fixed)) {
       const Mount& carrier = robot_.mounts[at(parent.parent.link)];
-      mount = {carrier.body, carrier.pose * parent.parent.frame};
+      mount = {carrier.body, carrier.pose * parent.child_pose()};
       if (here.has_mass() && mount.body == world_link) messages_.ignore("mass of ground, link", here.name);
       note_massless(here);
       return;

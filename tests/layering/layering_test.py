@@ -18,6 +18,7 @@ STANDS_ON = {
     "format": ["model"],
     "yaml": ["format"],
     "urdf": ["format"],
+    "mjcf": ["urdf"],
     "convert": ["yaml"],
     "linear": ["base"],
     "system": ["model", "linear"],
@@ -29,7 +30,7 @@ STANDS_ON = {
     "plot": ["results", "svg"],
     "analysis": ["assembly"],
     "drawing": ["analysis", "svg"],
-    "load": ["yaml", "urdf", "run"],
+    "load": ["yaml", "mjcf", "run"],
     "report": ["results", "load"],
     "workers": ["base"],
     "job": ["results", "load", "workers"],
@@ -247,7 +248,7 @@ class Names(unittest.TestCase):
         self.assertTrue(self.names)
         found = []
         for path in sources("core"):
-            if path.startswith("core/urdf/"):  # a format with joint types of its own
+            if path.startswith(("core/urdf/", "core/mjcf/")):  # formats with joint types of their own
                 continue
             # How the base of a robot is held is a word of the format, not a joint.
             text = re.sub(r'\{"base", .*?\}', "", read(path).lower(), flags=re.S)

@@ -335,7 +335,7 @@ def progress_of(progress: Progress, end: Sequence[float]) -> Callable[[float, in
 def model_of_result(directory: str, summary: Mapping[str, Any]) -> Model | None:
     """The model that stands in a result, as it ran; None where it has none that can be read."""
     settings = summary.get("settings") or {}
-    for name in ("model.yaml", "model.urdf"):
+    for name in ("model.yaml", "model.urdf", "model.xml"):
         path = os.path.join(directory, name)
         if not os.path.exists(path):
             continue
