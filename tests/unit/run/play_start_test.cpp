@@ -103,7 +103,7 @@ TEST(PlayStart, IsTheSameWithoutAccount) {
        {test::mechanism("slider-crank"), test::mechanism("3-rrr"), test::mechanism("4-rrr"),
         test::mechanism("pendulum"), test::mechanism("slider-in-guide"), hanger(", initial: loaded"), hanger("")}) {
     const auto model = load(text);
-    for (const std::uint64_t number : {0, 2}) {
+    for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{2}}) {
       System one(*model), other(*model);
       const Start full = assemble_in_play(one, 1, number), bare = assemble_bare_in_play(other, 1, number);
       EXPECT_EQ(numbers_of(full), numbers_of(bare)) << text;
