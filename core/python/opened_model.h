@@ -67,7 +67,7 @@ class OpenedModel {
   std::string svg() const;
 
  private:
-  /// Assembled when it is first asked for. Without a lock, which a child of a fork could find held by nobody.
+  /// Assembled when it is first asked for. Without a lock: a child of a fork lacks the thread that holds it.
   const AssembledModel& assembled() const;
   OpenRequest same_text() const;
 
