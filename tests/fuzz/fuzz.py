@@ -19,6 +19,7 @@ ROOT = os.path.dirname(os.path.dirname(HERE))
 # Executions of the short run, some seconds each; and the longest input: beyond a limit of the reader, where it has one.
 TARGETS = {
     "expression": {"short": 40000, "longest": 10500},
+    "mjcf": {"short": 3000, "longest": 16384},
     "model": {"short": 6000, "longest": 16384},
     "table": {"short": 8000, "longest": 4096},
     "unit": {"short": 30000, "longest": 256},
@@ -30,6 +31,18 @@ EXPRESSIONS = ["2*pi/3", "1 mm + 2 in", "${a}*sin(2*pi*t/1 s)", "smooth(t, 0 s, 
                "atan2($f, t)", "min(1, max(t, 2)) * sqrt(t^2 + 1)", "1e-3", "abs(acos(cos(t)))^$a", "((1))",
                "exp(-t) / log(2)"]
 TABLES = ["time,value\n0,0\n0.5,1\n1,0\n", "# s, rad\n t , x \n0,+1e-3\n\n1,2\n2,1e-3\n", "t,a,b\n0,1,2\n1,2,3,4\n2,\n"]
+
+# The pages of documentation have the only MJCF files of the project.
+MJCF = re.compile(rb"```xml\n(<mujoco.*?)```", re.DOTALL)
+MJCF_PARTS = """<mujoco><compiler angle="radian" inertiafromgeom="auto" settotalmass="3"/>
+<default><geom density="2700"/><default class="arm"><joint damping="1"/><geom type="box"/></default></default>
+<worldbody><body name="a" childclass="arm" pos="0 0 1" euler="0 0.1 0.2"><freejoint/>
+<geom size="0.1 0.2 0.3"/><geom type="ellipsoid" size="0.1 0.2 0.3" mass="1" axisangle="0 1 0 0.3"/>
+<body name="b" quat="1 0 1 0"><joint name="q" type="slide" axis="1 0 0" range="-1 1" stiffness="3" springref="0.1" ref="0.2"/>
+<geom type="cylinder" fromto="0 0 0 0 0 1" size="0.05"/><frame pos="0 1 0"><site name="s" zaxis="1 0 0"/></frame></body>
+<body name="c"><joint type="ball"/><inertial pos="0 0 1" mass="2" fullinertia="2 2 2 0.1 0 0"/></body></body></worldbody>
+<equality><weld body1="a" body2="c"/><connect site1="s" site2="s"/><joint joint1="q" polycoef="0 1 0 0 0"/></equality></mujoco>
+"""
 
 
 def scalars(text):
@@ -57,6 +70,9 @@ def seeds(target):
     texts = [read(path) for path in files(ENDING[target])] if target in ENDING else []
     if target == "table":
         texts += [text.encode() for text in TABLES]
+    if target == "mjcf":
+        texts = [text for path in glob.glob(os.path.join(ROOT, "docs", "*.md")) for text in MJCF.findall(read(path))]
+        texts.append(MJCF_PARTS.encode())
     if target == "expression":
         texts = [text.encode() for text in EXPRESSIONS]
         for path in files("yaml"):

@@ -35,6 +35,10 @@ class MemoryFile {
 /// that there is a model or an error, and that each message of `file_name` points into the text.
 void check_model(std::string text, const std::string& file_name);
 
+/// check_model() of a robot file in `text`, given as a model of that name and, as a file in memory, named by a side-car
+/// that asks for one of the ways to read it.
+void check_robot(const std::string& text, const std::string& file_name);
+
 /// Requires that the messages are fit to be printed and point into `text`.
 void check_messages(const Diagnostics& diagnostics, const std::string& file_name, std::string_view text);
 
