@@ -13,7 +13,7 @@ constexpr long work_per_instruction = 150;    // of the formula, more
 constexpr std::size_t corners_at_once = 128;  // then the window ends early
 constexpr std::size_t many_corners = 8;       // or a part of the window: worth the work that was allowed
 constexpr double good_part = 1.0 / 16.0;
-constexpr int deepest = 200;                   // nested spans
+constexpr int deepest_halving = 200;           // nested spans
 constexpr std::size_t most_corners = 1 << 18;  // in an outline
 
 double before(double t) { return std::nextafter(t, -std::numeric_limits<double>::infinity()); }
@@ -148,7 +148,7 @@ bool FormulaCourse::look_over(const Span& span, int depth, std::size_t first_ope
   bool good = true;
   if (count == sides_.located()) {
     note_corners();
-  } else if (span.high - span.low <= 16.0 * rounding_ || depth == deepest) {
+  } else if (span.high - span.low <= 16.0 * rounding_ || depth == deepest_halving) {
     sides_.roots().clear();
     for (std::size_t o = still_open; o < open_.size(); ++o) sides_.locate_between(open_[o], span);
     note_corners();

@@ -5,7 +5,8 @@
 namespace freeplay {
 
 LoadOptions loading(const CommonOptions& common) {
-  LoadOptions options{common};
+  const LoadWords& words = common;
+  LoadOptions options{words};
   options.warn = [no_color = common.no_color](const std::string& text) {
     print_messages("freeplay: warning: " + text + "\n", no_color);
   };
