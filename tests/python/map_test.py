@@ -41,6 +41,11 @@ class Map(InFolder):
         self.assertEqual(run["body.slider.x"][-1], one["last"][1])
         self.assertGreaterEqual(one["peak"][1], run["joint.wrist.fn"].max())
 
+    def test_an_executor_is_something_with_a_function_map(self):
+        for executor in (3, "pool", ThreadPoolExecutor):
+            self.assertRaises(TypeError, freeplay.map, SLIDER, POINTS, reduce=REDUCE, executor=executor)
+        self.assertRaisesRegex(TypeError, "executor: one with a function map.. is needed.* not int", freeplay.map, SLIDER, POINTS, reduce=REDUCE, executor=3)
+
     def test_a_section_of_a_file_gives_the_bytes_of_the_command_line(self):
         os.symlink(SLIDER, "slider-crank.yaml")
         pathlib.Path("study.yaml").write_text(STUDY)

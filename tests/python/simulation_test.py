@@ -4,7 +4,6 @@ import pathlib
 import subprocess
 import sys
 import threading
-import time
 import unittest
 
 import numpy as np
@@ -155,8 +154,8 @@ class Inputs(WithRod):
 
 class Threads(WithRod):
     def test_another_thread_may_interrupt_and_do_nothing_else(self):
-        sim = freeplay.load("rod.yaml", end="100000 s").simulation(out="r")
-        raised = []
+        on, raised = threading.Event(), []
+        sim = freeplay.load("rod.yaml", end="100000 s").simulation(out="r", progress=lambda *_: on.set())
 
         def go():
             try:
@@ -165,7 +164,7 @@ class Threads(WithRod):
                 raised.append(error)
         thread = threading.Thread(target=go)
         thread.start()
-        time.sleep(0.3)
+        on.wait()
         for call in (sim.step, sim.advance, sim.close, sim.result, lambda: sim.time, lambda: sim.row, lambda: sim["time"], lambda: sim.set("motor", 1)):
             self.assertRaisesRegex(RuntimeError, "another thread", call)
         sim.interrupt()
@@ -177,19 +176,6 @@ class Threads(WithRod):
     def test_a_function_that_is_called_during_a_run_cannot_use_it(self):
         sim = freeplay.load("rod.yaml", end="100000 s").simulation(progress=lambda *_: sim.step())
         self.assertRaisesRegex(RuntimeError, "a function called during a step", sim.advance)
-
-    def test_a_halt_costs_less_than_two_microseconds(self):
-        sim = freeplay.load(str(ROOT / "mechanisms/pendulum.yaml"), end="200 s").simulation()
-        single = inside = math.inf
-        for _ in range(10):
-            began = time.thread_time()
-            for _ in range(2000):
-                sim.step()
-            single = min(single, time.thread_time() - began)
-            began = time.thread_time()
-            sim.step(2000)
-            inside = min(inside, time.thread_time() - began)
-        self.assertLess((single - inside) / 2000, 2e-6)
 
 
 if __name__ == "__main__":

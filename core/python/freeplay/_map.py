@@ -292,6 +292,8 @@ def computed(source: Source | Model, points: Points, reduce: Reduce, workers: in
     threads = _core.processor_count() if workers is None else count_of("workers", workers)
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: a function of the points done and of all is needed, not {type(progress).__name__}")
+    if executor is not None and (isinstance(executor, type) or not callable(getattr(executor, "map", None))):
+        raise TypeError(f"executor: one with a function map() is needed, like those of concurrent.futures, not {type(executor).__name__}")
     if points is None:
         if executor is not None or callable(reduce):
             raise usage("map() without points: an executor, or a function that takes the numbers, needs points")
