@@ -15,6 +15,7 @@ namespace {
 
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
 constexpr double no_length = 1e-9;         // of a spring [m]
+constexpr double most_damping = 1000.0;    // by that of the limit of swinging
 constexpr double most_stretch = 10.0;      // of a spring by a weight, by the model's size
 
 class ForceDoubts {
@@ -34,6 +35,8 @@ class ForceDoubts {
                joint);
       } else {
         judge_length(joint);
+        judge_pretension(joint);
+        judge_damping(joint);
       }
     }
     judge_pairs();
@@ -88,6 +91,37 @@ class ForceDoubts {
                          joint.name, free, length),
              joint);
     }
+  }
+
+  /// What is longer by its own length before anything pulls.
+  void judge_pretension(const JointElement& joint) const {
+    const double pretension = number(joint, "pretension"), stiffness = number(joint, "stiffness");
+    const auto [x, y, z] = apart(joint);
+    const double length = std::hypot(x, y, z);
+    if (!(stiffness > 0.0) || !(pretension > stiffness * std::max(length, system_.size()))) return;
+    doubt_(
+        "doubtful-value",
+        fmt::format("the pretension of '{}' is {:.4g} N, which stretches its {:.4g} N/m by {:.4g} m, though its ends "
+                    "are {:.4g} m apart: check both numbers and their units",
+                    joint.name, pretension, stiffness, pretension / stiffness, length),
+        joint);
+  }
+
+  /// Against that which just keeps the heavier of both bodies from swinging on the spring.
+  void judge_damping(const JointElement& joint) const {
+    const double damping = number(joint, "damping"), stiffness = number(joint, "stiffness");
+    double mass = 0.0;
+    for (const int marker : {joint.marker_a, joint.marker_b}) {
+      if (body_of(marker) != ground) mass = std::max(mass, model_.bodies[at(body_of(marker))].mass);
+    }
+    const bool turns = joint.ideal_layout.coordinate == Coordinate::angle;
+    if (turns || !(stiffness > 0.0) || !(damping > most_damping * 2.0 * std::sqrt(stiffness * mass))) return;
+    doubt_("doubtful-value",
+           fmt::format("the damping of '{}' is {:.4g} N*s/m, {:.2g} times what keeps {:.4g} kg on its {:.4g} N/m from "
+                       "swinging: it takes {:.2g} s to follow its spring; check both numbers and their units",
+                       joint.name, damping, damping / (2.0 * std::sqrt(stiffness * mass)), mass, stiffness,
+                       damping / stiffness),
+           joint);
   }
 
   // --- twice -----------------------------------------------------------------------------------------------------

@@ -52,9 +52,10 @@ std::size_t after_bracket(std::string_view text, std::size_t open) {
 }
 
 /// Calls `use(word, is_parameter)` for every word of an expression; the exponent of a number is none, nor is what
-/// stands in the brackets of a function that makes a plain number of it: the pi of `30*sin(2*pi*t)` says nothing of 30.
+/// stands in the brackets of a function that makes a plain number of it, where these are passed over: the pi of
+/// `30*sin(2*pi*t)` says nothing of 30.
 template <class Use>
-bool any_word(std::string_view text, Use&& use) {
+bool any_word(std::string_view text, Use&& use, Arguments arguments = Arguments::passed_over) {
   for (std::size_t i = 0; i < text.size();) {
     const unsigned char c = static_cast<unsigned char>(text[i]);
     const bool micro = c >= 0x80;  // of µm
@@ -69,7 +70,7 @@ bool any_word(std::string_view text, Use&& use) {
     while (i < text.size() && (is_word_part(text[i]) || static_cast<unsigned char>(text[i]) >= 0x80)) ++i;
     const bool parameter = begin > 0 && (text[begin - 1] == '$' || text[begin - 1] == '{');
     const std::size_t bracket = std::min(text.find_first_not_of(' ', i), text.size());
-    if (!parameter && bracket < text.size() && text[bracket] == '(' &&
+    if (arguments == Arguments::passed_over && !parameter && bracket < text.size() && text[bracket] == '(' &&
         std::ranges::count(plain_functions, text.substr(begin, i - begin)) > 0) {
       i = after_bracket(text, bracket);
       continue;
@@ -129,22 +130,23 @@ void doubt_length(const CheckedValue& written, double value, double scale, doubl
 
 }  // namespace
 
-bool names_a_unit(const CheckedValue& written) {
+bool names_a_unit(const CheckedValue& written, Arguments arguments) {
   if (!written.node().is_scalar()) return false;
-  return any_word(written.node().text, [&](std::string_view word, bool parameter) {
+  const auto is_unit = [&](std::string_view word, bool parameter) {
     if (!parameter) return is_unit_name(word);
     const Quantity* quantity = written.reading().scope->find(word);
     return quantity != nullptr && quantity->kind == DimensionKind::dimensioned;
-  });
+  };
+  return any_word(written.node().text, is_unit, arguments);
 }
 
-bool says_unit(const CheckedValue& value) {
-  if (value.node().is_scalar()) return names_a_unit(value);
+bool says_unit(const CheckedValue& value, Arguments arguments) {
+  if (value.node().is_scalar()) return names_a_unit(value, arguments);
   for (std::size_t k = 0; k < value.node().items.size(); ++k) {
-    if (says_unit(value.item(k))) return true;
+    if (says_unit(value.item(k), arguments)) return true;
   }
   for (const Node::Entry& entry : value.node().entries) {
-    if (says_unit(CheckedValue(value.reading(), *entry.value, entry.key, value.path()))) return true;
+    if (says_unit(CheckedValue(value.reading(), *entry.value, entry.key, value.path()), arguments)) return true;
   }
   return false;
 }

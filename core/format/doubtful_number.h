@@ -22,11 +22,14 @@ inline constexpr double slide_speed = 50.0;             ///< [m/s]
 inline constexpr double rows = 1e7;                     ///< of a result
 }  // namespace bare_limit
 
-/// True if a unit stands in the text of the value or in that of a parameter that it refers to, but for arguments of
-/// functions such as sin and smooth, which say nothing of its own unit. Such a value is never doubted for its unit.
-bool names_a_unit(const CheckedValue& written);
+/// What stands in the brackets of functions such as sin and smooth, which says nothing of the unit of a value.
+enum class Arguments { passed_over, read };
+
+/// True if a unit stands in the text of the value or in that of a parameter that it refers to. Such a value is
+/// never doubted for its unit.
+bool names_a_unit(const CheckedValue& written, Arguments arguments = Arguments::passed_over);
 /// The same for any text within a list or a map.
-bool says_unit(const CheckedValue& value);
+bool says_unit(const CheckedValue& value, Arguments arguments = Arguments::passed_over);
 
 /// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi. True after a message.
 bool doubt_angle(const CheckedValue& written, double radians);

@@ -14,6 +14,7 @@
 #include "format/doubtful_load.h"
 #include "format/doubtful_motion.h"
 #include "format/doubtful_number.h"
+#include "format/doubtful_rest.h"
 #include "format/draft.h"
 #include "format/driver_section.h"
 #include "format/force_section.h"
@@ -78,6 +79,7 @@ class ModelBuilder {
     if (diagnostics_.has_errors()) return nullptr;
     doubt_bodies(draft_);
     doubt_motions(draft_);
+    doubt_rests(draft_);
     doubt_gears(draft_);
     doubt_loads(draft_);
     if (!document_.incomplete()) warn_unused_frames(draft_);

@@ -144,10 +144,15 @@ MISTAKES = [
     (CART, "kind: position, value: 0.1*sin(3*t)", "kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, 1000], [0.502, 0], [2, 0]]}",
      VALUE, "{points", "linear"),
     (ROD, "bob: {", "bob: {pose: {rpy: [0, 0, 90]}, ", ANGLE, "90", "deg"),
+    (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 20, 40)'}}", "doubtful-time", "'2*smooth", "long before it begins to change"),
+    (CRANK, "forces:\n", "forces:\n  push: {type: force, at: slider, value: ['-2*smooth(t, 20, 21)', 0]}\n", "doubtful-time", "['-2", "ends at 0.02 s"),
     (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "the motor is on the slow side", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "kind: velocity, value: 10", "kind: velocity, value: 600000 rpm", "doubtful-speed", "600000", "'one' would turn with 1.99e+03 m/s"),
     (BELT, "first_radius: 0.05", "first_radius: 50", LENGTH, "50", "50 mm"),
+    (BELT, "stiffness: 2e5", "stiffness: 0.2", VALUE, "belt", "by 1500 m"),
+    (BELT, "damping: 100", "damping: 1e8", VALUE, "belt", "from swinging: it takes 5e+02 s"),
+    (BELT, "pretension: 300", "pretension: 3e5 N", VALUE, "belt", "by 1.5 m"),
 ]
 
 # A driven crank from which a double pendulum hangs, a roller that spins on it, a mass between springs, a free puck.
@@ -192,7 +197,11 @@ SOUND = [
     (CRANK, "value: 100", "value: 1200 rad/s"),
     (CRANK, DRIVEN, "kind: angle, value: 500*t}}"),
     (CRANK, DRIVEN, "kind: angle, value: 60 deg*sin(3*t)}}"),
+    (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 20 s, 40 s)'}}"),
+    (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 0.1, 0.2)'}}"),
+    (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 0.001, 0.009)*(1 - smooth(t, 0.009, 0.019))'}}"),
     (TRAIN, "ratio: 2", "ratio: 1/2000", "", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
+    (TRAIN, "kind: velocity, value: 10", "kind: velocity, value: 200000 rpm", "", {"step: 1e-3": "accuracy: 1 um"}),
     (CRANK, DRIVEN, "kind: angle, value: 60 rad + sin(3*t)}}"),
     (CRANK, DRIVEN, "kind: angle, value: 60 rad + 30 rad*sin(2*pi*t)}}"),
     (CRANK, DRIVEN, "kind: angle, value: '8*pi*smooth(t, 0, 0.1)'}}"),
