@@ -141,11 +141,11 @@ void add_joints(const RunRecord& record, TextTable& table) {
   }
 }
 
-/// What joints with play go through in the time that counts, of the run that is written.
+/// What all that touches goes through in the time that counts, of the run that is written.
 void add_play(const RunRecord& record, TextTable& table) {
   table.add_row({heading(record, "play"), "in flight", "in impact", "lasting", "impacts", "sliding", "load x slip"});
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
-    if (!is_listed(record.model.joints[i]) || !record.clearances.has(static_cast<int>(i))) continue;
+    if (!record.clearances.has(static_cast<int>(i))) continue;
     const PlayFigures seen = record.clearances.figures(static_cast<int>(i));
     const PlayNoise noise = play_noise(record, static_cast<int>(i));
     constexpr FigureStyle sum{.digits = 3, .prefixed = true};

@@ -171,28 +171,33 @@ Json clearance_part(const JointLayout& layout) {
           {"length", json_number(layout.contact_length)}};
 }
 
+/// What contacts of a joint, or of an element among the forces, did: null where it has none; -1 stands for no joint.
+void append_contacts(const RunRecord& record, int joint, Json& entry) {
+  const bool touches = joint >= 0 && has_contact_statistics(record.channels.joints[static_cast<std::size_t>(joint)]);
+  const JointStatistics seen = touches ? record.statistics.joint(joint) : JointStatistics{};
+  const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };
+  entry["max_fn"] = contact(seen.max_normal_force);
+  entry["max_delta"] = contact(seen.max_penetration);
+  entry["max_eccentricity"] = contact(seen.max_eccentricity);
+  entry["contacts"] = touches && record.statistics.any() ? Json(seen.contacts) : Json(nullptr);
+  entry["contact_fraction"] = contact(seen.contact_fraction);
+  entry["dissipated"] = contact(seen.dissipated);
+}
+
 Json joints_part(const RunRecord& record) {
   Json part = Json::object();
   for (std::size_t i = 0; i < record.model.joints.size(); ++i) {
     const JointElement& joint = record.model.joints[i];
     if (joint.is_force) continue;
     const JointStatistics seen = record.statistics.joint(static_cast<int>(i));
-    const bool touches = has_contact_statistics(record.channels.joints[i]);
-    const auto contact = [&](double value) { return touches ? json_number(value) : Json(nullptr); };
-    const bool counted = touches && record.statistics.any();
-    append(part, joint.name,
-           {{"type", joint.component->description.name},
-            {"max_force", json_number(seen.max_force)},
-            {"max_torque", json_number(seen.max_torque)},
-            {"rms_force", json_number(seen.rms_force)},
-            {"max_fn", contact(seen.max_normal_force)},
-            {"max_delta", contact(seen.max_penetration)},
-            {"max_eccentricity", contact(seen.max_eccentricity)},
-            {"contacts", counted ? Json(seen.contacts) : Json(nullptr)},
-            {"contact_fraction", contact(seen.contact_fraction)},
-            {"dissipated", contact(seen.dissipated)},
-            {"clearance", clearance_part(joint.layout)},
-            {"play", play_part(record, static_cast<int>(i))}});
+    Json& entry = append(part, joint.name,
+                         {{"type", joint.component->description.name},
+                          {"max_force", json_number(seen.max_force)},
+                          {"max_torque", json_number(seen.max_torque)},
+                          {"rms_force", json_number(seen.rms_force)}});
+    append_contacts(record, static_cast<int>(i), entry);
+    entry["clearance"] = clearance_part(joint.layout);
+    entry["play"] = play_part(record, static_cast<int>(i));
   }
   return part;
 }
@@ -202,11 +207,14 @@ Json forces_part(const RunRecord& record) {
   for (std::size_t i = 0; i < record.model.force_elements.size(); ++i) {
     const ForceStatistics seen = record.statistics.force(static_cast<int>(i));
     const ForceWords words = force_words(record.model, static_cast<int>(i));
-    append(part, words.name,
-           {{"type", words.type},
-            {"max_force", json_number(seen.max_force)},
-            {"max_torque", json_number(seen.max_torque)},
-            {"work", json_number(seen.work)}});
+    Json& entry = append(part, words.name,
+                         {{"type", words.type},
+                          {"max_force", json_number(seen.max_force)},
+                          {"max_torque", json_number(seen.max_torque)},
+                          {"work", json_number(seen.work)}});
+    const int joint = record.model.force_elements[i].joint;
+    append_contacts(record, joint, entry);
+    entry["play"] = joint >= 0 ? play_part(record, joint) : Json(nullptr);
   }
   return part;
 }

@@ -62,21 +62,29 @@ Json settings_part() {
                  {"ideal", list_of(text())}});
 }
 
-Json joint_part() {
-  Json fields = {{"type", text()}};
-  for (const char* name : {"max_force", "max_torque", "rms_force", "max_fn", "max_delta", "max_eccentricity"}) {
-    fields[name] = number_or_null();
-  }
+/// Of contacts; all null where there is none.
+void add_contacts(Json& fields) {
+  for (const char* name : {"max_fn", "max_delta", "max_eccentricity"}) fields[name] = number_or_null();
   fields["contacts"] = integer_or_null();
   for (const char* name : {"contact_fraction", "dissipated"}) fields[name] = number_or_null();
+}
+Json play_part() {
+  Json part = numbers({"flight", "impact", "lasting", "max_approach_speed", "max_impulse", "mean_fn", "load_angle",
+                       "load_concentration", "load_elevation", "sliding", "work", "pv_mean", "pv_max", "carried_in",
+                       "carried_out"});
+  part["properties"]["impacts"] = integer();
+  part["required"].push_back("impacts");
+  part["type"] = {"object", "null"};
+  return part;
+}
+
+Json joint_part() {
+  Json fields = {{"type", text()}};
+  for (const char* name : {"max_force", "max_torque", "rms_force"}) fields[name] = number_or_null();
+  add_contacts(fields);
   const Json round = numbers({"radial_clearance", "bearing_radius", "journal_radius", "length"});
   fields["clearance"] = {{"anyOf", {round, numbers({"gap", "length"}), {{"type", "null"}}}}};
-  fields["play"] = numbers({"flight", "impact", "lasting", "max_approach_speed", "max_impulse", "mean_fn", "load_angle",
-                            "load_concentration", "load_elevation", "sliding", "work", "pv_mean", "pv_max",
-                            "carried_in", "carried_out"});
-  fields["play"]["properties"]["impacts"] = integer();
-  fields["play"]["required"].push_back("impacts");
-  fields["play"]["type"] = {"object", "null"};
+  fields["play"] = play_part();
   return record(std::move(fields));
 }
 
@@ -107,10 +115,11 @@ Json trust_part() {
 }
 
 Json force_part() {
-  return record({{"type", text()},
-                 {"max_force", number_or_null()},
-                 {"max_torque", number_or_null()},
-                 {"work", number_or_null()}});
+  Json fields = {{"type", text()}};
+  for (const char* name : {"max_force", "max_torque", "work"}) fields[name] = number_or_null();
+  add_contacts(fields);
+  fields["play"] = play_part();
+  return record(std::move(fields));
 }
 
 /// Null where nothing in the model can touch.

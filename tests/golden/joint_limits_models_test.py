@@ -127,19 +127,22 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
                 self.assertAlmostEqual(-0.6, columns["joint.%s.speed" % name][-1] / v, delta=0.03)
             self.assertLess(max(map(abs, columns["energy.residual"])), 1e-8)
 
-    def test_a_stop_among_the_joints_has_statistics_of_its_contacts(self):
-        model = PLANE[:-2] + """, end: {type: joint-stop, between: [ground, block], lower: -0.1, upper: 0.2,
-  contact: {law: hertz, K: 1e8}}}
-initial: {speeds: {slide: 2.1}}
-simulation: {end: 0.5 s, %s}
-""" % EXACT
-        self.run_model(model)
-        seen = json.loads(self.read("out", "summary.json"))["joints"]["end"]
-        self.assertEqual(3, seen["contacts"])  # at 0.095, about 0.24 and about 0.38 s
-        # m v^2/2 = 2/5 K d^2.5
-        depth = (2.5 * 2.1 ** 2 / 1e8) ** 0.4
-        self.assertAlmostEqual(1.0, seen["max_delta"] / depth, delta=1e-3)
-        self.assertAlmostEqual(1.0, seen["max_fn"] / (1e8 * depth ** 1.5), delta=1e-3)
+    def test_a_stop_has_statistics_of_its_contacts_wherever_it_stands(self):
+        end = "end: {type: joint-stop, between: [ground, block], lower: -0.1, upper: 0.2, contact: {law: hertz, K: 1e8}}"
+        rest = "initial: {speeds: {slide: 2.1}}\nsimulation: {end: 0.5 s, %s}\n" % EXACT
+        depth = (2.5 * 2.1 ** 2 / 1e8) ** 0.4  # m v^2/2 = 2/5 K d^2.5
+        of = {}
+        for part, model in (("joints", PLANE[:-2] + ", %s}\n" % end), ("forces", PLANE + "forces: {%s}\n" % end)):
+            text, _ = self.freeplay("run", self.model(model + rest), "--out", "out")
+            self.assertRegex(text, r"\n *play .*\n *end +\d")
+            seen = of[part] = json.loads(self.read("out", "summary.json"))[part]["end"]
+            self.assertEqual(3, seen["contacts"])  # at 0.095, about 0.24 and about 0.38 s
+            self.assertEqual(3, seen["play"]["impacts"])
+            self.assertAlmostEqual(2.1, seen["play"]["max_approach_speed"], delta=1e-9)
+            self.assertAlmostEqual(1.0, seen["max_delta"] / depth, delta=1e-3)
+            self.assertAlmostEqual(1.0, seen["max_fn"] / (1e8 * depth ** 1.5), delta=1e-3)
+        for figure in ("max_fn", "max_delta", "contacts", "contact_fraction", "dissipated", "play"):
+            self.assertEqual(of["joints"][figure], of["forces"][figure], figure)
 
     def test_mistakes_in_a_stop_are_told(self):
         head = PLANE + "forces:\n  a: {type: joint-stop, kind: %s, between: [ground, %s], lower: %s, upper: 1%s}\n"
