@@ -49,7 +49,9 @@ void translate(std::exception_ptr pointer) {
   } catch (const Error& error) {
     raise(Refusal(error));
   } catch (const std::bad_alloc&) {
-    throw;  // MemoryError
+    PyErr_SetString(
+        PyExc_MemoryError,
+        "there is not enough memory: rows of a run take less with a longer interval or with fewer channels");
   } catch (const py::builtin_exception&) {
     throw;
   } catch (const std::exception& exception) {

@@ -41,11 +41,6 @@ class Map(InFolder):
         self.assertEqual(run["body.slider.x"][-1], one["last"][1])
         self.assertGreaterEqual(one["peak"][1], run["joint.wrist.fn"].max())
 
-    def test_an_executor_is_something_with_a_function_map(self):
-        for executor in (3, "pool", ThreadPoolExecutor):
-            self.assertRaises(TypeError, freeplay.map, SLIDER, POINTS, reduce=REDUCE, executor=executor)
-        self.assertRaisesRegex(TypeError, "executor: one with a function map.. is needed.* not int", freeplay.map, SLIDER, POINTS, reduce=REDUCE, executor=3)
-
     def test_a_section_of_a_file_gives_the_bytes_of_the_command_line(self):
         os.symlink(SLIDER, "slider-crank.yaml")
         pathlib.Path("study.yaml").write_text(STUDY)
@@ -76,6 +71,12 @@ class Map(InFolder):
         for call in (mapped({"c": [1e-4], "speed": [1.0, 2.0]}), mapped({"nope": [1.0]}), mapped(reduce=None), mapped(reduce={}), mapped(workers=0),
                      mapped(errors="ignore"), mapped(reduce={"c": ("body.slider.x", "max")}), lambda: freeplay.map("freeplay: 1\n")):
             self.assertRaises(freeplay.UsageError, call)
+        for call in (lambda: freeplay.Function(SLIDER, [], REDUCE), mapped({"c": [1e-4]}, reduce=lambda result: {"c": 1.0}), mapped({"c": [1e-4]}, reduce=lambda result: {"index": 1.0})):
+            self.assertRaises(freeplay.UsageError, call)
+        for executor in (3, ThreadPoolExecutor):
+            self.assertRaisesRegex(TypeError, "executor: an Executor", mapped(executor=executor))
+        for numbers in ({"a": "x"}, {"a": [1.0, 2.0]}, {"a,b": 1.0}, {"a\n": 1.0}, {3: 1.0}):
+            self.assertRaisesRegex(TypeError, "reduce: ", mapped({"c": [1e-4]}, reduce=lambda result: numbers))
         for call in (mapped({"c": 1e-4}), mapped({"c": [None]}), mapped([1, 2]), mapped(reduce={"a": "max"}), mapped(workers="2"), mapped(progress=1), mapped(endd=1)):
             self.assertRaises(TypeError, call)
         for reduce in ({"a": ("joint.wrist.fm", "max")}, {"a": ("joint.wrist.fn", "maximum")}):
@@ -95,7 +96,7 @@ except freeplay.Interrupted as error:
         while child.stdout.readline() != "1 4\n":
             pass
         child.send_signal(2)
-        child.communicate(timeout=60)
+        child.communicate()
         self.assertEqual(42, child.returncode)
 
     def test_a_function_of_parameters(self):

@@ -1,5 +1,7 @@
 """Runs step by step: the bits of a whole run, inputs that the command line sets again, one thread at a time."""
+import copy
 import math
+import os
 import pathlib
 import subprocess
 import sys
@@ -20,6 +22,15 @@ drivers: {motor: {joint: pivot, kind: torque, input: 0 N*m}}
 initial: {joints: {pivot: -90 deg}}
 simulation: {end: 0.2 s, step: 1 ms, output: {interval: 10 ms}}
 """
+
+
+def until_in_a_step(sim):
+    """Waits for another thread to be in it."""
+    while True:
+        try:
+            sim.time
+        except RuntimeError:
+            return
 
 
 class WithRod(InFolder):
@@ -89,13 +100,23 @@ class Steps(WithRod):
         self.assertEqual("failed", caught.exception.result.status)
         self.assertTrue(len(caught.exception.result.time) > 5)
 
+    def test_files_stay_where_they_were_begun(self):
+        pathlib.Path("other").mkdir()
+        with freeplay.load("rod.yaml").simulation(out="r") as sim:
+            sim.step()
+            os.chdir("other")
+            sim.advance()
+        os.chdir("..")
+        self.assertEqual("completed", freeplay.open("r").status)
+
     def test_what_cannot_be_meant_is_refused(self):
         sim = freeplay.load("rod.yaml").simulation()
         sim.advance("20 ms")
         for call in (lambda: sim.advance("10 ms"), lambda: sim.advance("3 kg"), lambda: sim.advance(math.nan), lambda: sim.advance(math.inf), lambda: sim.advance("1 s", rows=1),
                      lambda: sim.advance(rows=0), lambda: sim.step(-1), lambda: sim.set("motor", "3 kg"), lambda: sim.set("motor", math.nan)):
             self.assertRaises(freeplay.UsageError, call)
-        for call in (lambda: sim.advance(True), lambda: sim.advance([1]), lambda: sim.advance(rows=1.5), lambda: sim.step("1"), lambda: sim.set("motor", None)):
+        for call in (lambda: sim.advance(True), lambda: sim.advance([1]), lambda: sim.advance(rows=1.5), lambda: sim.step("1"), lambda: sim.step(True), lambda: sim.set("motor", None),
+                     lambda: copy.copy(sim)):
             self.assertRaises(TypeError, call)
         for call in (lambda: sim["joint.pivot.angel"], lambda: sim.set("moter", 1)):
             self.assertRaisesRegex(freeplay.UnknownName, "did you mean", call)
@@ -154,8 +175,8 @@ class Inputs(WithRod):
 
 class Threads(WithRod):
     def test_another_thread_may_interrupt_and_do_nothing_else(self):
-        on, raised = threading.Event(), []
-        sim = freeplay.load("rod.yaml", end="100000 s").simulation(out="r", progress=lambda *_: on.set())
+        sim = freeplay.load("rod.yaml", end="100000 s").simulation(out="r")
+        raised = []
 
         def go():
             try:
@@ -164,11 +185,11 @@ class Threads(WithRod):
                 raised.append(error)
         thread = threading.Thread(target=go)
         thread.start()
-        on.wait()
+        until_in_a_step(sim)
         for call in (sim.step, sim.advance, sim.close, sim.result, lambda: sim.time, lambda: sim.row, lambda: sim["time"], lambda: sim.set("motor", 1)):
             self.assertRaisesRegex(RuntimeError, "another thread", call)
         sim.interrupt()
-        thread.join(5)
+        thread.join()
         self.assertEqual("interrupted", raised[0].result.status)
         self.assertEqual(("interrupted", True), (sim.status, sim.done))
         self.assertEqual("interrupted", freeplay.open("r").status)
@@ -176,6 +197,32 @@ class Threads(WithRod):
     def test_a_function_that_is_called_during_a_run_cannot_use_it(self):
         sim = freeplay.load("rod.yaml", end="100000 s").simulation(progress=lambda *_: sim.step())
         self.assertRaisesRegex(RuntimeError, "a function called during a step", sim.advance)
+
+    def test_other_threads_go_on_during_a_step(self):
+        sim = freeplay.load("rod.yaml", end="100000 s").simulation()
+        thread = threading.Thread(target=lambda: self.assertRaises(freeplay.Interrupted, sim.advance))
+        thread.start()
+        until_in_a_step(sim)
+        for _ in range(10000):  # each of them finds the step in hand, so none has waited for its end
+            self.assertRaises(RuntimeError, lambda: sim.time)
+        sim.interrupt()
+        thread.join()
+
+    def test_a_halt_is_one_call_of_the_core_and_leaves_nothing(self):
+        sim = freeplay.load(str(ROOT / "mechanisms/pendulum.yaml"), end="200 s").simulation()
+        calls = []
+        sys.setprofile(lambda frame, event, what: calls.append((event, what)))
+        try:
+            sim.step()
+        finally:
+            sys.setprofile(None)
+        self.assertEqual(["advance", "setprofile"], [what.__name__ for event, what in calls if event == "c_call"])
+        self.assertEqual(1, sum(event == "call" for event, _ in calls))
+        sim.step(10)
+        before = sys.getallocatedblocks()
+        for _ in range(2000):
+            sim.step()
+        self.assertLess(sys.getallocatedblocks() - before, 20)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _core
 from ._errors import Error, Interrupted, usage
-from ._source import count_of, flag, quantity, renamed, text
+from ._source import count_of, flag, quantity, text
 from ._table import Table
 
 if TYPE_CHECKING:
@@ -55,6 +55,8 @@ def pose_words(value: Any) -> list[str]:
         return [value]
     if isinstance(value, Mapping):
         return [pairs("pose", value)]
+    if np.ndim(value) == 0 and not isinstance(value, Iterable):
+        raise TypeError(f"pose: one pose, a list of poses or an array (N, 3) or (N, 6) is needed, not {type(value).__name__}")
     poses = list(value)
     if poses and not isinstance(poses[0], (Mapping, str)) and np.ndim(poses[0]) == 0:
         return [",".join(quantity("pose", number) for number in poses)]
@@ -71,6 +73,8 @@ def input_words(value: Any) -> list[str]:
         return [value]
     if isinstance(value, Mapping):
         return [pairs("input", value)]
+    if not isinstance(value, (list, tuple)):
+        raise TypeError(f"input: a mapping of joints to values, or a list of such, is needed, not {type(value).__name__}")
     return [word for one in value for word in input_words(one)]
 
 
@@ -111,6 +115,7 @@ def axes_of(table: Mapping[str, Any]) -> dict[str, Any]:
         values = list(dict.fromkeys(table["columns"][name].tolist())) if name in table["columns"] else []
         if len(values) > 1:
             axes[name] = np.array(values)
+            axes[name].setflags(write=False)
     return axes if axes and int(np.prod([len(axis) for axis in axes.values()])) == table["rows"] else {}
 
 
@@ -126,10 +131,11 @@ def asked(model: Model, words: dict[str, Any]) -> dict[str, Any]:
 
 
 def drawn(model: Model, words: dict[str, Any]) -> str:
+    model = model._here()
     try:
         return str(asked(model, words)["map"])
     except Error as error:
-        raise renamed(error, model._options.get("folder")) from None
+        raise model._named(error) from None
 
 
 def analyse(model: Model, kind: str, options: Mapping[str, Any], force: bool, colours: bool) -> Table:

@@ -12,7 +12,7 @@ from . import _core
 from ._errors import Error, Interrupted, Message, refused, usage
 from ._model import OF_LOAD, OF_RUN, Model, require_known
 from ._result import Result
-from ._source import OF_TEXT, Quantity, Source, build_options, count_of, place_of, plain, quantity, renamed
+from ._source import OF_TEXT, Quantity, Source, build_options, count_of, place_of, plain, quantity
 from ._table import Column, Table
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ Points = Union[Mapping[str, Any], Iterable[Mapping[str, Quantity]], None]
 Progress = Union[Callable[[int, int], Any], None]
 SHORT = ("channel", "reduce", "from")
 BEFORE_ALL = -1e300  # [s]
+OWN_COLUMNS = ("index", "exit_code", "error")
 ALONE = "value"  # the name of a reducer that has none
 
 
@@ -124,6 +125,11 @@ def numbers_of(reduce: Callable[[Result], Mapping[str, float]], result: Result) 
     found = reduce(result)
     if not isinstance(found, Mapping):
         raise TypeError(f"reduce: the function is to return a mapping of names to numbers, not {type(found).__name__}")
+    for name, value in found.items():
+        if not isinstance(name, str) or not name or not name.isprintable() or set(name) & set(',"'):
+            raise TypeError(f"reduce: {name!r} cannot be the name of a column")
+        if isinstance(value, str) or np.ndim(value) != 0:
+            raise TypeError(f"reduce: {name}: the function is to return a number, not {type(value).__name__}")
     return {name: float(value) for name, value in found.items()}
 
 
@@ -187,6 +193,9 @@ def by_function(model: Model, reduce: Callable[[Result], Mapping[str, float]], t
     except KeyboardInterrupt as error:
         raised = error
     names = list(dict.fromkeys(name for one in taken for name in one[3]))
+    for name in names:
+        if name in (*targets, *OWN_COLUMNS):
+            raise usage(f"reduce: '{name}' is a column already", message_id="duplicate-name")
     shown = _core.cells(values)
     rows = [Row(i, shown[i], *one[:3], [one[3].get(name, float("nan")) for name in names]) for i, one in enumerate(taken)]
     return Done([(name, _core.unit_of(model._core, name), False) for name in targets], [(name, "") for name in names], rows, raised)
@@ -261,7 +270,7 @@ def model_of(source: Source | Model, options: Mapping[str, Any]) -> Model:
     require_known(options, (*OF_LOAD, *OF_RUN))
     given = {name: value for name, value in options.items() if value is not None}
     if isinstance(source, Model):
-        return source.replace(**given) if given else source
+        return source.replace(**given) if given else source._here()
     return Model(place_of(source, options.get("folder")), given)
 
 
@@ -276,7 +285,7 @@ def counted(progress: Progress) -> Progress:
 def study_of(source: Source | Model, reduce: Mapping[str, Any] | None, workers: int, progress: Progress, options: Mapping[str, Any]) -> Done:
     """The points of the section `study` of a file."""
     if isinstance(source, Model):
-        place, given = source._place, {**source._options, **{name: value for name, value in options.items() if value is not None}}
+        place, given = source._here()._place, {**source._options, **{name: value for name, value in options.items() if value is not None}}
     else:
         place, given = place_of(source, options.get("folder")), dict(options)
     if os.path.basename(place["file"]) == OF_TEXT:
@@ -290,10 +299,10 @@ def computed(source: Source | Model, points: Points, reduce: Reduce, workers: in
     if errors not in ("keep", "raise"):
         raise usage(f"bad value '{errors}' of errors: it must be keep or raise", message_id="bad-value")
     threads = _core.processor_count() if workers is None else count_of("workers", workers)
+    if executor is not None and (isinstance(executor, type) or not callable(getattr(executor, "map", None))):
+        raise TypeError(f"executor: an Executor as in concurrent.futures is needed, not {executor if isinstance(executor, type) else type(executor).__name__}")
     if progress is not None and not callable(progress):
         raise TypeError(f"progress: a function of the points done and of all is needed, not {type(progress).__name__}")
-    if executor is not None and (isinstance(executor, type) or not callable(getattr(executor, "map", None))):
-        raise TypeError(f"executor: one with a function map() is needed, like those of concurrent.futures, not {type(executor).__name__}")
     if points is None:
         if executor is not None or callable(reduce):
             raise usage("map() without points: an executor, or a function that takes the numbers, needs points")
@@ -313,7 +322,7 @@ def computed(source: Source | Model, points: Points, reduce: Reduce, workers: in
         else:
             done = done_of(_core.map_points(model._core, reducers_text(reduce), targets, values, threads, counted(progress)))
     except Error as error:
-        raise renamed(error, model._options.get("folder")) from None
+        raise model._named(error) from None
     if done.raised is None and errors == "raise":
         raise_first(done, model, targets, values)
     return done
@@ -365,6 +374,8 @@ class Function:
         if isinstance(inputs, str) or not all(isinstance(name, str) for name in inputs):
             raise TypeError("inputs: a list of names is needed")
         self.inputs: tuple[str, ...] = tuple(inputs)
+        if not self.inputs:
+            raise usage("inputs: at least one name is needed")
         if len(set(self.inputs)) < len(self.inputs):
             raise usage("inputs: a name stands there twice", message_id="duplicate-name")
         self.alone: bool = not isinstance(outputs, Mapping) or any(not isinstance(entry, (Mapping, tuple, list)) for entry in outputs.values())

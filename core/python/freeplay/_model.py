@@ -9,7 +9,7 @@ from . import _core, _html
 from ._analyses import analyse
 from ._errors import Error, Message, ModelWarning, message_of, usage
 from ._result import Result, raise_failure, result_of
-from ._source import Quantity, Source, build_options, count_of, filled, flag, kept_options, of_text, place_of, quantity, remark, renamed
+from ._source import Quantity, Source, build_options, count_of, filled, flag, kept_options, path_of, place_of, quantity, remark, renamed, shown_name
 from ._simulation import Simulation
 from ._table import Table
 
@@ -38,15 +38,17 @@ class Model:
     """
 
     def __init__(self, place: Mapping[str, Any], options: Mapping[str, Any]) -> None:
-        self._place = dict(place)
         self._options = kept_options(options)
+        self._place = {name: value for name, value in place.items() if name != "shown"}
+        self._shown: str = place.get("shown") or shown_name(place["file"], self._options.get("folder"))
+        self._home = present_folder()
         try:
             self._core = _core.open_model({**self._place, **build_options(self._options)})
         except Error as error:
-            raise renamed(error, self._options.get("folder")) from None
+            raise self._named(error) from None
         known = self._known = self._core.known()
         self.name: str = known["name"]
-        self.file: str = of_text(known["file"], self._options.get("folder")) or ""
+        self.file: str = self._shown if known["file"] == self._place["file"] else known["file"]
         self.text: str = known["text"].decode("utf-8", "replace")
         self.space: str = known["space"]
         self.bodies: tuple[str, ...] = known["bodies"]
@@ -55,17 +57,24 @@ class Model:
         self.inputs: tuple[str, ...] = tuple(name for name, _ in known["inputs"])
         self.parameters: dict[str, float] = dict(known["parameters"])
         self.channels: tuple[Channel, ...] = tuple(Channel(*one) for one in known["channels"])
-        folder = self._options.get("folder")
         messages = [message_of(fields) for fields in known["messages"]]
         self.warnings: tuple[Message, ...] = tuple(
-            [one._replace(file=of_text(one.file, folder)) for one in messages] + [remark(text) for text in known["remarks"]])
+            [one._replace(file=self.file) if one.file == self._place["file"] else one for one in messages] + [remark(text) for text in known["remarks"]])
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Model, (self._same_text(), self._options)
 
     def _same_text(self) -> dict[str, Any]:
-        """Where the model is from, whatever its file has become."""
-        return self._place if self.file.endswith(".urdf") else {**self._place, "text": self._known["text"]}
+        """Where the model is from, whatever its file and the present folder have become."""
+        place = {**self._place, "file": os.path.join(self._home, self._place["file"]), "shown": self._shown}
+        return place if self.file.endswith(".urdf") else {**place, "text": self._known["text"]}
+
+    def _here(self) -> Model:
+        """The model for work that reads its tables again: where the present folder is another now, with a path from the root."""
+        return self if os.path.isabs(self._place["file"]) or present_folder() == self._home else self.replace()
+
+    def _named(self, error: Error) -> Error:
+        return renamed(error, self._place["file"], self._shown)
 
     def __repr__(self) -> str:
         return f"<freeplay.Model '{self.name}', {self.space}, {len(self.bodies)} bodies>"
@@ -99,7 +108,7 @@ class Model:
         try:
             return question()
         except Error as error:
-            raise renamed(error, self._options.get("folder")) from None
+            raise self._named(error) from None
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes `text` to `path`. Options such as `set` are not in it."""
@@ -157,16 +166,24 @@ class Model:
         return self._analysed("inverse-dynamics", force, False, frame=frame, pose=pose, grid=grid, time=time, input=input, elbow=elbow, preload=preload)
 
     def _analysed(self, kind: str, force: bool, colours: bool, **options: Any) -> Table:
+        model = self._here()
         try:
-            return analyse(self, kind, options, force, colours)
+            return analyse(model, kind, options, force, colours)
         except Error as error:
-            raise renamed(error, self._options.get("folder")) from None
+            raise model._named(error) from None
 
     def _repr_svg_(self) -> str:
         return self.svg()
 
     def _repr_html_(self) -> str:
         return _html.page(f"{self.name}: {self.space}", _html.drawing(self.svg()), _html.table((), _html.pairs(self.facts())))
+
+
+def present_folder() -> str:
+    try:
+        return os.getcwd()
+    except OSError:
+        return ""  # it is no more
 
 
 def require_known(options: Mapping[str, Any], known: Iterable[str]) -> None:
@@ -210,8 +227,9 @@ def check(source: Source, *, set: Mapping[str, Quantity] | None = None, ideal: s
     """All messages of a model, an empty list for a good one. The arguments are those of load(); raises UsageError alone."""
     options = {"set": set, "ideal": ideal, "end": end, "step": step, "accuracy": accuracy, "integrator": integrator, "plugins": plugins,
                "strict": strict, "allow_plugins": allow_plugins}
-    messages = [message_of(fields) for fields in _core.check_model({**place_of(source, folder), **build_options(options)})]
-    return [one._replace(file=of_text(one.file, folder)) for one in messages]
+    place = place_of(source, folder)
+    messages = [message_of(fields) for fields in _core.check_model({**place, **build_options(options)})]
+    return [one._replace(file=shown_name(one.file, folder)) if one.file == place["file"] else one for one in messages]
 
 
 def run(source: Source | Model, *, out: str | os.PathLike[str] | None = None, force: bool = False, format: str | None = None,
@@ -269,7 +287,7 @@ def call_of(model: Model, options: Mapping[str, Any], name: str) -> Call:
                  if options.get(count) is not None)
     if options.get("checkpoint") is not None:
         words["checkpoint"] = filled("checkpoint", quantity("checkpoint", options["checkpoint"]))
-    words.update((path, filled(path, os.fspath(options[path]))) for path in ("out", "inputs") if options.get(path) is not None)
+    words.update((path, filled(path, path_of(path, options[path]))) for path in ("out", "inputs") if options.get(path) is not None)
     if words["report"] and "out" not in words:
         raise usage("--report needs --out, the directory in which the page is to be")
     progress = progress_of(options.get("progress"), (float(model._known["end"]),))
@@ -281,7 +299,7 @@ def run_model(model: Model, options: Mapping[str, Any]) -> Result:
     try:
         kept, raised = _core.run(*call.words)
     except Error as error:
-        raise renamed(error, call.model._options.get("folder")) from None
+        raise call.model._named(error) from None
     result = result_of(kept, call.model, call.profiled, call.directory)
     warn(result.warnings, 4)
     raise_failure(kept, result, raised)
@@ -311,10 +329,12 @@ def begin(model: Model, options: Mapping[str, Any]) -> tuple[Model, _core.Steppe
     call = call_of(model, options, "freeplay.Simulation()")
     if state is not None:
         call.words[1]["state"] = bytes(state)
+    if call.directory is not None:
+        call.words[1]["out"] = call.directory  # the present folder may be another at the end
     try:
         return call.model, _core.begin(*call.words), call.directory, call.profiled
     except Error as error:
-        raise renamed(error, call.model._options.get("folder")) from None
+        raise call.model._named(error) from None
 
 
 def progress_of(progress: Progress, end: Sequence[float]) -> Callable[[float, int], None] | None:

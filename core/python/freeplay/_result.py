@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _core, _html
 from ._errors import Error, Interrupted, NumericalError, Message, PluginError, ResultError, unknown_name, usage
-from ._source import flag, names as names_of
+from ._source import flag, names as names_of, path_of
 
 if TYPE_CHECKING:
     from ._model import Model
@@ -167,7 +167,7 @@ class Result:
             raise usage("save(): the simulation is not over: close() it before")
         if self._kept is None:
             raise usage("save(): a result that came from another process has its numbers alone: save it there")
-        path = os.fspath(out)
+        path = path_of("out", out)
         _core.save(self._kept, path, flag("force", force), format)
         return pathlib.Path(path)
 
@@ -177,7 +177,7 @@ class Result:
         path: of the page, which may replace another page; without it report.html in the directory of the result.
         """
         if self._directory is not None:
-            return pathlib.Path(_core.report(self._directory, "" if path is None else os.fspath(path)))
+            return pathlib.Path(_core.report(self._directory, "" if path is None else path_of("path", path)))
         if path is None:
             raise usage("report(): a result that was not written has no directory: say where the page is to be")
         import tempfile
@@ -185,7 +185,7 @@ class Result:
         with tempfile.TemporaryDirectory() as folder:
             name = self.model.name if self.model is not None else "result"
             written = self.save(os.path.join(folder, name), format="hdf5")
-            return pathlib.Path(_core.report(str(written), os.fspath(path)))
+            return pathlib.Path(_core.report(str(written), path_of("path", path)))
 
 
 def result_of(kept: _core.KeptRun, model: Model, profiled: bool, directory: str | None) -> Result:
@@ -221,9 +221,10 @@ def open(path: str | os.PathLike[str], *, channels: str | Iterable[str] = "*") -
     """
     from ._model import model_of_result
 
-    stored = _core.read(os.fspath(path), names_of(channels))
+    place = path_of("path", path)
+    stored = _core.read(place, names_of(channels))
     summary = stored["summary"] if isinstance(stored["summary"], dict) else {}
     directory = stored["directory"] or None
     model = model_of_result(directory, summary) if directory else None
     return Result(stored, stored["data"], stored["event_numbers"], summary, model, stored["stored"],
-                  os.path.abspath(directory or os.fspath(path)))
+                  os.path.abspath(directory or place))

@@ -7,7 +7,7 @@ from typing import Any
 from . import _core
 from ._model import Progress, progress_of, warn
 from ._result import Result, open, raise_failure
-from ._source import Quantity, filled, flag, quantity
+from ._source import Quantity, filled, flag, path_of, quantity
 
 
 def resume(path: str | os.PathLike[str], *, end: Quantity | None = None, checkpoint: Quantity | None = None, report: bool = False,
@@ -26,7 +26,7 @@ def resume(path: str | os.PathLike[str], *, end: Quantity | None = None, checkpo
     if "checkpoint" in given:
         words["checkpoint"] = given["checkpoint"]
     on_progress = progress_of(progress, ends)
-    kept, raised = _core.resume(os.fspath(path), given.get("end", ""), flag("allow_plugins", allow_plugins), words, ends.append, on_progress)
+    kept, raised = _core.resume(path_of("path", path), given.get("end", ""), flag("allow_plugins", allow_plugins), words, ends.append, on_progress)
     result = open(path)
     if kept is None:
         return result

@@ -37,6 +37,8 @@ def seal(core: _core.SteppedRun, directory: str) -> None:
         if core.ended() is None:
             core.close()
             warnings.warn(f"the simulation in '{directory}' was not closed: it ends where it stopped", ResourceWarning, stacklevel=2)
+    except Error as error:
+        warnings.warn(f"the simulation in '{directory}' was not closed, and its files cannot be: {error}", ResourceWarning, stacklevel=2)
     except RuntimeError:
         pass  # a thread that the program did not wait for is in a step
 
@@ -73,6 +75,9 @@ class Simulation:
         except Error:
             if kind is None:
                 raise
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        raise TypeError("a simulation cannot be copied: checkpoint() gives what another one goes on from")
 
     def __repr__(self) -> str:
         return f"<freeplay.Simulation of '{self.model.name}', {self.status} at {self.time:g} s of {self.end:g} s>"
@@ -137,7 +142,7 @@ class Simulation:
 
     def step(self, count: int = 1) -> float:
         """Goes on by `count` accepted steps, no farther than the end, and returns the time that is reached [s]."""
-        time = self._core.advance(math.inf, ALL, 1 if count == 1 else min(count_of("count", count), ALL))
+        time = self._core.advance(math.inf, ALL, 1 if count == 1 and type(count) is int else min(count_of("count", count), ALL))
         return time if time == time else self._over()
 
     def set(self, name: str, value: Quantity) -> None:

@@ -45,6 +45,15 @@ def quantity(name: str, value: Any) -> str:
     return repr(int(value)) if isinstance(value, Integral) else repr(float(value))
 
 
+def path_of(name: str, value: Any) -> str:
+    """A path as a text."""
+    if isinstance(value, (str, os.PathLike)):
+        path = os.fspath(value)
+        if isinstance(path, str):
+            return whole(name, path)
+    raise TypeError(f"{name}: a path is needed, not {type(value).__name__}")
+
+
 def count_of(name: str, value: int, least: int = 1) -> int:
     """A whole number from `least` on."""
     if type(value) is int and value >= least:
@@ -91,7 +100,10 @@ def plain(value: Any, place: str) -> Any:
 
 def tree_text(tree: Mapping[str, Any]) -> str:
     """A model as its file: JSON is YAML."""
-    return json.dumps(plain(tree, ""), indent=2, ensure_ascii=False) + "\n"
+    try:
+        return json.dumps(plain(tree, ""), indent=2, ensure_ascii=False) + "\n"
+    except RecursionError:
+        raise TypeError("the model: something in it holds itself, or is too deep") from None
 
 
 def place_of(source: Any, folder: Any) -> dict[str, Any]:
@@ -108,7 +120,7 @@ def place_of(source: Any, folder: Any) -> dict[str, Any]:
 
 
 def file_of_text(folder: Any) -> str:
-    return OF_TEXT if folder is None else os.path.join(os.fspath(folder), OF_TEXT)
+    return OF_TEXT if folder is None else os.path.join(path_of("folder", folder), OF_TEXT)
 
 
 def build_options(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -153,18 +165,17 @@ def filled(name: str, text: str) -> str:
     return whole(f"--{name}", text)
 
 
-def of_text(file: str | None, folder: Any) -> str | None:
-    """How messages name a model that is at hand as a text, wherever its paths count from."""
+def shown_name(file: str, folder: Any) -> str:
+    """How messages name the file of a model: a text has one name wherever its paths count from."""
     return OF_TEXT if file == file_of_text(folder) else file
 
 
-def renamed(error: Error, folder: Any) -> Error:
-    """The same error with the name of a text that stands in `folder`."""
-    if folder is None:
+def renamed(error: Error, file: str, shown: str) -> Error:
+    """The same error with the name that the file of a model is to have."""
+    if file == shown:
         return error
-    text = str(error).replace(file_of_text(folder), OF_TEXT)
-    error.args = (text,)
-    error.messages = tuple(message._replace(file=of_text(message.file, folder)) for message in error.messages)
+    error.args = (str(error).replace(file, shown),)
+    error.messages = tuple(message._replace(file=shown) if message.file == file else message for message in error.messages)
     return error
 
 
