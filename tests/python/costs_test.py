@@ -3,13 +3,14 @@ import ctypes
 import gc
 import os
 import pathlib
+import signal
 import subprocess
 import sys
 import threading
 import unittest
 
 import freeplay
-from in_folder import ROOT, SLIDER, InFolder
+from in_folder import ROOT, SLIDER, InFolder, is_in_core
 
 LARGEST = 8.0e6  # of _core without symbols
 FAILS = (ROOT / "mechanisms/pendulum.yaml").read_text().replace("pivot: {type: revolute", "pivot: {type: revolut")
@@ -62,15 +63,17 @@ class Costs(InFolder):
         self.assertLess(resident() - before, 2)
 
     def test_python_goes_on_while_a_run_is_on(self):
-        model = freeplay.load(SLIDER, end="8 ms")
-        self.addCleanup(sys.setswitchinterval, sys.getswitchinterval())
-        sys.setswitchinterval(1e-5)  # a run that held the interpreter would leave this thread some turns at either end of it
-        worker = threading.Thread(target=model.run)
-        worker.start()
-        turns = 0
-        while worker.is_alive():
-            turns += 1
-        self.assertGreater(turns, 10000)
+        model = freeplay.load(SLIDER, end="100000 s")
+
+        def go_on():
+            turns = 0
+            while turns < 10000:
+                turns += is_in_core(sys._current_frames()[threading.main_thread().ident], "run_model")
+            os.kill(os.getpid(), signal.SIGINT)  # which would be no Interrupted outside of the run
+        thread = threading.Thread(target=go_on)
+        thread.start()
+        self.assertRaises(freeplay.Interrupted, model.run)
+        thread.join()
 
 
 if __name__ == "__main__":

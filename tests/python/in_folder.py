@@ -18,6 +18,11 @@ def same_bits(a, b):
     return np.asarray(a, dtype=float).tobytes() == np.asarray(b, dtype=float).tobytes()
 
 
+def is_in_core(frame, function):
+    """Whether this function of the package, innermost in a thread, is past its beginning, where it calls the core."""
+    return frame.f_code.co_name == function and frame.f_lineno > frame.f_code.co_firstlineno
+
+
 class InFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
