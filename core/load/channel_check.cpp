@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -62,24 +63,36 @@ void check_limit(const StopCondition& condition, const ChannelInfo& channel, Dia
                                 dimension_name(condition.quantity.dimension)));
 }
 
-/// First words of channels, as `body`.
-std::vector<std::string> kinds_of(const std::vector<std::string>& channels) {
-  std::vector<std::string> kinds;
-  for (const std::string& channel : channels) {
-    const std::string_view word = std::string_view(channel).substr(0, channel.find('.'));
-    if (kinds.empty() || kinds.back() != word) kinds.emplace_back(word);
+/// Names of channels, to look for what was meant.
+struct KnownNames {
+  explicit KnownNames(const Channels& of) : channels(of), all(channel_names(of)), set(all.begin(), all.end()) {
+    for (const std::string& name : all) {
+      const std::string_view word = std::string_view(name).substr(0, name.find('.'));
+      if (kinds.empty() || kinds.back() != word) kinds.emplace_back(word);
+    }
   }
-  return kinds;
-}
+  const Channels& channels;
+  std::vector<std::string> all, kinds;  // kinds: first words, as `body`
+  std::unordered_set<std::string_view> set;
+};
 
-/// The channel or pattern that was meant: another kind of column where its first word is none.
-std::string nearest_channel(const std::string& name, const std::vector<std::string>& names,
-                            const std::vector<std::string>& kinds) {
+/// The channel or pattern that was meant, which there is: with another first word, or one in front, where its own is no
+/// kind of column.
+std::string nearest_name(const std::string& name, const KnownNames& known) {
   const std::size_t dot = std::min(name.find('.'), name.size());
   const std::string kind = name.substr(0, dot);
-  if (std::ranges::find(kinds, kind) != kinds.end()) return is_pattern(name) ? "" : nearest(name, names);
-  const std::string meant = nearest(kind, kinds);
-  return meant.empty() ? "" : meant + name.substr(dot);
+  if (std::ranges::find(known.kinds, kind) != known.kinds.end())
+    return is_pattern(name) ? "" : nearest(name, known.all);
+  if (!is_pattern(name)) {
+    for (const std::string& word : known.kinds) {
+      if (known.set.contains(word + "." + name)) return word + "." + name;
+    }
+  }
+  const std::string meant = nearest(kind, known.kinds);
+  if (meant.empty()) return "";
+  const std::string whole = meant + name.substr(dot);
+  if (is_pattern(name)) return matches_channel(whole, known.channels) ? whole : "";
+  return known.set.contains(whole) ? whole : nearest(whole, known.all);
 }
 
 [[noreturn]] void refuse_pattern(const std::string& pattern, const std::string& meant) {
@@ -90,14 +103,13 @@ std::string nearest_channel(const std::string& name, const std::vector<std::stri
 }  // namespace
 
 std::string nearest_channel(const std::string& name, const Channels& channels) {
-  const std::vector<std::string> names = channel_names(channels);
-  return nearest_channel(name, names, kinds_of(names));
+  return nearest_name(name, KnownNames(channels));
 }
 
 void check_channels(const Model& model, const Document& document, const std::vector<std::string>& unsure,
                     bool by_option, bool with_study, Diagnostics& diagnostics) {
   const Channels channels(model);
-  const std::vector<std::string> names = channel_names(channels), kinds = kinds_of(names);
+  const KnownNames known_names(channels);
   const auto unknown = [&](const Location& location, const std::string& name, const std::string& message) {
     const std::string_view fixed = std::string_view(name).substr(0, name.find('*'));
     if (std::ranges::any_of(unsure, [&](const std::string& beginning) {
@@ -105,7 +117,7 @@ void check_channels(const Model& model, const Document& document, const std::vec
         })) {
       return;
     }
-    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_channel(name, names, kinds));
+    diagnostics.error(location, character_count(name), "unknown-name", message, nearest_name(name, known_names));
   };
   std::unordered_map<std::string_view, const ChannelInfo*> by_name;
   for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
@@ -117,16 +129,16 @@ void check_channels(const Model& model, const Document& document, const std::vec
     unknown(condition.location, condition.channel, fmt::format("there is no channel '{}'", condition.channel));
   }
   const auto patterns = static_cast<std::size_t>(std::ranges::count_if(model.settings.channels, is_pattern));
-  if (patterns * names.size() > most_comparisons) {
+  if (patterns * known_names.all.size() > most_comparisons) {
     diagnostics.error(pattern_location(document, 0), 1, "too-large",
-                      fmt::format("{} patterns for {} channels are too many", patterns, names.size()));
+                      fmt::format("{} patterns for {} channels are too many", patterns, known_names.all.size()));
     return;
   }
   for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
     const std::string& pattern = model.settings.channels[i];
     if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
     if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
-    if (by_option) refuse_pattern(pattern, nearest_channel(pattern, names, kinds));
+    if (by_option) refuse_pattern(pattern, nearest_name(pattern, known_names));
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));
   }
   if (!with_study) return;

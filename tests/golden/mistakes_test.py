@@ -29,6 +29,9 @@ IN_SPACE = "freeplay: 1\nspace: spatial\nbodies: {a: {mass: 1, inertia: %s}}\n"
 # What is replaced (None: the whole file), by what; id, line, column and the suggestion, where there is one.
 MISTAKES = [
     ('freeplay: 1', 'freeplay: 1\nstudy: {axes: {a: [1]}, reducers: {r: {channel: joint.A.angel, reduce: max}}}', 'unknown-name', 2, 49, 'joint.A.angle'),
+    ('step: 1 ms', 'step: 1 ms, output: {channels: [rod.omega]}', 'unknown-name', 14, 54, 'body.rod.omega'),
+    ('step: 1 ms', 'step: 1 ms, output: {channels: [bdy.rod.y]}', 'unknown-name', 14, 54, 'body.rod.y'),
+    ('step: 1 ms', 'step: 1 ms, output: {channels: [bdy.rod.yy]}', 'unknown-name', 14, 54, 'body.rod.y'),
     ('mass: $a', 'mas: $a', 'unknown-key', 4, 9, 'mass'),
     ('bodies:\n', 'bodys:\n', 'unknown-key', 3, 1, 'bodies'),
     ('type: revolute, between: [ground', 'type: revolut, between: [ground', 'unknown-type', 7, 13, 'revolute'),
