@@ -54,7 +54,7 @@ void judge(const Draft& draft, const char* section, const std::string& name, con
 }  // namespace
 
 void doubt_rests(const Draft& draft) {
-  if (draft.options.end) return;  // somebody wants to see the beginning alone
+  if (draft.options.end) return;  // an end given to the run, not by the file, may cut it short on purpose
   const Model& model = draft.model;
   std::vector<const Expression*> formulas;
   const auto take = [&](const std::vector<Expression>& parts) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 
 #include <fmt/format.h>
 
@@ -65,7 +64,8 @@ void check_limit(const StopCondition& condition, const ChannelInfo& channel, Dia
 
 /// Names of channels, to look for what was meant.
 struct KnownNames {
-  explicit KnownNames(const Channels& of) : channels(of), all(channel_names(of)), set(all.begin(), all.end()) {
+  explicit KnownNames(const Channels& of) : channels(of), all(channel_names(of)) {
+    for (const ChannelInfo& channel : of.all()) by_name.emplace(channel.name, &channel);
     for (const std::string& name : all) {
       const std::string_view word = std::string_view(name).substr(0, name.find('.'));
       if (kinds.empty() || kinds.back() != word) kinds.emplace_back(word);
@@ -73,7 +73,7 @@ struct KnownNames {
   }
   const Channels& channels;
   std::vector<std::string> all, kinds;  // kinds: first words, as `body`
-  std::unordered_set<std::string_view> set;
+  std::unordered_map<std::string_view, const ChannelInfo*> by_name;
 };
 
 /// The channel or pattern that was meant, which there is: with another first word, or one in front, where its own is no
@@ -85,14 +85,14 @@ std::string nearest_name(const std::string& name, const KnownNames& known) {
     return is_pattern(name) ? "" : nearest(name, known.all);
   if (!is_pattern(name)) {
     for (const std::string& word : known.kinds) {
-      if (known.set.contains(word + "." + name)) return word + "." + name;
+      if (known.by_name.contains(word + "." + name)) return word + "." + name;
     }
   }
   const std::string meant = nearest(kind, known.kinds);
   if (meant.empty()) return "";
   const std::string whole = meant + name.substr(dot);
   if (is_pattern(name)) return matches_channel(whole, known.channels) ? whole : "";
-  return known.set.contains(whole) ? whole : nearest(whole, known.all);
+  return known.by_name.contains(whole) ? whole : nearest(whole, known.all);
 }
 
 [[noreturn]] void refuse_pattern(const std::string& pattern, const std::string& meant) {
@@ -119,10 +119,8 @@ void check_channels(const Model& model, const Document& document, const std::vec
     }
     diagnostics.error(location, character_count(name), "unknown-name", message, nearest_name(name, known_names));
   };
-  std::unordered_map<std::string_view, const ChannelInfo*> by_name;
-  for (const ChannelInfo& channel : channels.all()) by_name.emplace(channel.name, &channel);
   for (const StopCondition& condition : model.settings.stop) {
-    if (const auto known = by_name.find(condition.channel); known != by_name.end()) {
+    if (const auto known = known_names.by_name.find(condition.channel); known != known_names.by_name.end()) {
       check_limit(condition, *known->second, diagnostics);
       continue;
     }
@@ -136,7 +134,7 @@ void check_channels(const Model& model, const Document& document, const std::vec
   }
   for (std::size_t i = 0; i < model.settings.channels.size(); ++i) {
     const std::string& pattern = model.settings.channels[i];
-    if (!is_pattern(pattern) && by_name.contains(pattern)) continue;
+    if (!is_pattern(pattern) && known_names.by_name.contains(pattern)) continue;
     if (is_pattern(pattern) && matches_channel(pattern, channels)) continue;
     if (by_option) refuse_pattern(pattern, nearest_name(pattern, known_names));
     unknown(pattern_location(document, i), pattern, fmt::format("no channel fits '{}'", pattern));

@@ -68,6 +68,7 @@ void add_contacts(Json& fields) {
   fields["contacts"] = integer_or_null();
   for (const char* name : {"contact_fraction", "dissipated"}) fields[name] = number_or_null();
 }
+
 Json play_part() {
   Json part = numbers({"flight", "impact", "lasting", "max_approach_speed", "max_impulse", "mean_fn", "load_angle",
                        "load_concentration", "load_elevation", "sliding", "work", "pv_mean", "pv_max", "carried_in",
