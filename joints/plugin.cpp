@@ -29,6 +29,8 @@ Component brake();
 Component one_way_clutch();
 Component point_on_curve();
 Component point_on_curve_lift_off();
+Component slot_contact();
+Component arc_contact();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
@@ -59,6 +61,8 @@ FREEPLAY_PLUGIN(joints) {
                                          brake(),
                                          one_way_clutch(),
                                          point_on_curve(),
-                                         point_on_curve_lift_off()};
+                                         point_on_curve_lift_off(),
+                                         slot_contact(),
+                                         arc_contact()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

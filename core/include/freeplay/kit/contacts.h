@@ -34,6 +34,16 @@ struct LoadedContact {
   std::size_t first, columns;  ///< of its internal variables among those of the joint; length of a row of derivatives
 };
 
+/// Whether b may go away from the surface further than the scale of a flight.
+template <class Geometry>
+constexpr bool leaves_surface() {
+  if constexpr (requires { Geometry::leaves; }) {
+    return Geometry::leaves;
+  } else {
+    return false;
+  }
+}
+
 /// A joint whose contacts stand where `Geometry` says:
 ///
 ///   static constexpr std::size_t contacts;                              how many
@@ -41,6 +51,10 @@ struct LoadedContact {
 ///   double play;                                                        scale of a flight [m]
 ///   std::array<double, n> stand(const Motion<double>&) const;           first channels: where b stands in its play
 ///   bool between_walls() const;                                         endless ones, the joint's PlayShape
+///
+/// One whose b may go away from the surface further than `play` has
+///
+///   static constexpr bool leaves = true;                                steps grow with the distance then
 ///
 /// One whose contacts share the laws' forces has
 ///
@@ -203,7 +217,7 @@ class Contacts : public Joint {
         laws_.write_kinks(at.approach(), Kinematics::signed_size(at.slip), one, g.part(each * i, each));
     }
   }
-  /// In flight no contact nears its surface by more than the play, whichever way an end may lie.
+  /// In flight no contact nears its surface by more than the play, or than its distance, whichever way an end may lie.
   double step_limit(const JointInput& in) const override {
     const Pair pair(in);
     const Geometry& geometry = with(in.history);
@@ -215,7 +229,8 @@ class Contacts : public Joint {
       if (one.history[phase] != flight) {
         limit = std::min(limit, impact_step(one));
       } else if (speed > 0.0) {
-        limit = std::min(limit, geometry_.play / speed);
+        const double free = leaves_surface<Geometry>() ? std::max(geometry_.play, -at.penetration) : geometry_.play;
+        limit = std::min(limit, free / speed);
       }
     }
     return limit;
