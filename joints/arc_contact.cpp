@@ -173,7 +173,15 @@ class ArcContact final : public BoundaryContact<TwoArcs> {
     arcs.play = arcs.inside ? a - b : 1e-3 * std::min(a, b);
     return arcs;
   }
-  ArcContact(const Parameters& p, const TwoArcs& arcs) : BoundaryContact(arcs, boundary_laws(p, arcs.play)) {}
+  ArcContact(const Parameters& p, const TwoArcs& arcs)
+      : BoundaryContact(arcs, boundary_laws(p, arcs.play), outlines_of(arcs)) {}
+  static Outlines outlines_of(const TwoArcs& arcs) {
+    Outlines lines;
+    std::size_t body = 0;
+    for (const Arc& arc : {arcs.first, arcs.second})
+      lines.add_arc(body++, 0.0, arc.radius, arc.middle - arc.half, arc.middle + arc.half);
+    return lines;
+  }
 };
 
 constexpr Parameter angle_row(const char* name, const char* summary) {

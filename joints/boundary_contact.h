@@ -2,6 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
 
 #include "freeplay/kit/planar_contacts.h"
 #include "freeplay/kit/play_parameters.h"
@@ -46,11 +49,38 @@ inline constexpr Parameter boundary_law_rows[] = {{.name = "contact",
                                                    .default_value = optional,
                                                    .summary = "Law of the tangential force."}};
 
+/// Lines of both boundaries for pictures.
+class Outlines {
+ public:
+  void add_point(std::size_t body, double x, double y) {
+    points_[body].push_back(x);
+    points_[body].push_back(y);
+  }
+  /// About (x, 0), from one angle to another.
+  void add_arc(std::size_t body, double x, double radius, double from, double to) {
+    constexpr int parts = 48;
+    for (int i = 0; i <= parts; ++i) {
+      const double angle = from + (to - from) * i / parts;
+      add_point(body, x + radius * std::cos(angle), radius * std::sin(angle));
+    }
+  }
+  Span<const BodyLine> lines() {
+    for (std::size_t body = 0; body < 2; ++body)
+      lines_[body] = {static_cast<std::uint32_t>(body), {points_[body].data(), points_[body].size()}};
+    return {lines_.data(), lines_.size()};
+  }
+
+ private:
+  std::array<std::vector<double>, 2> points_;
+  std::array<BodyLine, 2> lines_{};
+};
+
 /// One contact that holds nothing together: no constraint rows, no ideal joint that stands in for it.
 template <class Geometry>
 class BoundaryContact : public PlanarContacts<Geometry> {
  public:
-  using PlanarContacts<Geometry>::PlanarContacts;
+  BoundaryContact(const Geometry& geometry, const PlanarLaws& laws, Outlines outlines)
+      : PlanarContacts<Geometry>(geometry, laws), outlines_(std::move(outlines)), lines_(outlines_.lines()) {}
 
  protected:
   /// `radius`: the smaller one at the contact [m].
@@ -62,7 +92,12 @@ class BoundaryContact : public PlanarContacts<Geometry> {
     layout.event_roles = begin_and_end;
     layout.channels = channels;
     layout.channel_roles = boundary_roles;
+    layout.outlines = lines_;
   }
+
+ private:
+  Outlines outlines_;
+  Span<const BodyLine> lines_;
 };
 
 }  // namespace freeplay::play

@@ -22,7 +22,7 @@ using space::Vec;
 /// on rho: stored d.K d/2 + rho.K_r rho/2 and dissipated d'.C d' + rho'.C_r rho' are exact for any turn below half a
 /// one, where rho jumps. Of a turn about one axis, or with equal rotational stiffnesses, M = -K_r rho. The opposite
 /// wrench acts on a at P_b.
-class Bushing final : public Joint {
+class Bushing : public Joint {
  public:
   explicit Bushing(const Parameters& p)
       : stiffness_{p.number("stiffness.x"), p.number("stiffness.y"), p.number("stiffness.z")},
@@ -73,6 +73,18 @@ class Bushing final : public Joint {
   Vec<double> stiffness_, damping_, turn_stiffness_, turn_damping_;
 };
 
+/// In the plane the same, with what acts out of it left out.
+class PlanarBushing final : public Bushing {
+ public:
+  explicit PlanarBushing(const Parameters& p) : Bushing(p) {
+    for (const char* out_of_plane :
+         {"stiffness.z", "stiffness.turn_x", "stiffness.turn_y", "damping.z", "damping.turn_x", "damping.turn_y"}) {
+      if (p.given(out_of_plane))
+        throw BadParameter(out_of_plane, "out-of-range", "a bushing in the plane acts along x and y and about z alone");
+    }
+  }
+};
+
 constexpr Parameter row(const char* name, const char* unit, const char* summary) {
   return {.name = name, .unit = unit, .default_value = 0.0, .minimum = 0.0, .summary = summary};
 }
@@ -92,15 +104,16 @@ constexpr Parameter bushing_parameters[] = {row("stiffness.x", "N/m", "Stiffness
 }  // namespace
 
 Component bushing() {
-  return joint<Bushing>(
+  return joint<PlanarBushing>(
       {.name = "bushing",
-       .space = Space::spatial,
+       .space = Space::both,
        .summary = "Force element: an elastic bed, springs and dampers along and about the axes of the first frame.",
        .formula = "in the axes of the first frame: force on the second body -(K d + C d') with d = P_b - P_a; moment "
                   "-L^T (K_r rho + C_r rho') with rho the rotation vector of the second frame in the first, rho' = L "
                   "(w_b - w_a); work and stored energy agree exactly.",
        .validity = "Turns below half a revolution.",
-       .parameters = bushing_parameters});
+       .parameters = bushing_parameters,
+       .in_space = joint_face<Bushing>()});
 }
 
 }  // namespace freeplay

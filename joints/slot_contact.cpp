@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "boundary_contact.h"
 
@@ -83,7 +84,17 @@ class SlotContact final : public BoundaryContact<PinAtSlot> {
       throw BadParameter("mouth", "out-of-range", "'mouth' must lie beyond 'bottom', along x of the first frame");
     return {radius, play, bottom, mouth};
   }
-  SlotContact(const Parameters& p, const PinAtSlot& slot) : BoundaryContact(slot, boundary_laws(p, slot.play)) {}
+  SlotContact(const Parameters& p, const PinAtSlot& slot)
+      : BoundaryContact(slot, boundary_laws(p, slot.play), outlines_of(slot)) {}
+  static Outlines outlines_of(const PinAtSlot& slot) {
+    const double half = slot.play + slot.radius;
+    Outlines lines;
+    lines.add_point(0, slot.mouth, half);
+    lines.add_arc(0, slot.bottom, half, 0.5 * std::numbers::pi, 1.5 * std::numbers::pi);
+    lines.add_point(0, slot.mouth, -half);
+    lines.add_arc(1, 0.0, slot.radius, 0.0, 2.0 * std::numbers::pi);
+    return lines;
+  }
 };
 
 constexpr Parameter place_row(const char* name, const char* summary) {

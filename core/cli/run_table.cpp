@@ -205,7 +205,9 @@ void add_forces(const RunRecord& record, TextTable& table) {
   const PeakValues& peaks = record.statistics.largest().places();
   for (int f = 0; f < static_cast<int>(record.model.force_elements.size()); ++f) {
     const ForceStatistics seen = record.statistics.force(f);
-    const bool pure_force = seen.max_torque == 0.0, pure_torque = seen.max_force == 0.0 && !pure_force;
+    // A lever shorter than any is what rounding leaves of a force through the origin.
+    const bool pure_force = seen.max_torque <= 1e-14 * seen.max_force,
+               pure_torque = seen.max_force == 0.0 && !pure_force;
     const std::string name = force_words(record.model, f).name;
     table.add_row({name,
                    pure_torque ? "-"
@@ -276,10 +278,11 @@ std::string steps_per_impact(const RunRecord& record) {
 }
 
 /// What a figure with its noise says, where there is one.
-std::string noise_line(const std::string& tables) {
+std::string noise_line(const Model& model, const std::string& tables) {
   if (tables.find(" +- ") == std::string::npos) return {};
-  return "  +-: impacts make the motion chaotic; another step, start or build may change a figure by so much (--repeat "
-         "N)\n";
+  return fmt::format(
+      "  +-: impacts make the motion chaotic; another step, start or build may change a figure by so much{}\n",
+      model.clearance_joints() > 0 ? " (--repeat N)" : "");
 }
 
 /// From which starts the medians and ranges are, and which runs are not among them.
@@ -326,7 +329,7 @@ std::string run_table(const RunRecord& record) {
   if (!record.model.force_elements.empty()) add_forces(record, forces);
   const std::string tables = joints.text("  ") + play.text("  ") + gears.text("  ") + drivers.text("  ") +
                              forces.text("  ") + paths.text("  ");
-  text += tables + noise_line(tables) + window_lines(record);
+  text += tables + noise_line(record.model, tables) + window_lines(record);
   if (std::ranges::any_of(record.model.joints, couples_alone)) text += gear_sentence;
   text += twin_line(record.twin);
   text += repeat_lines(record.repeat);

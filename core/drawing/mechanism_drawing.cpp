@@ -9,6 +9,7 @@
 
 #include "component/joint_roles.h"
 #include "drawing/given_start.h"
+#include "drawing/joint_shapes.h"
 #include "drawing/joint_stops.h"
 #include "drawing/pitch_radii.h"
 #include "drawing/spatial_drawing.h"
@@ -29,7 +30,7 @@ using svg::px;
 class Drawing {
  public:
   Drawing(const System& system, const MechanismPicture& picture)
-      : model_(system.model()), picture_(picture), q_(picture.q), given_(system, picture.q) {
+      : model_(system.model()), picture_(picture), q_(picture.q), given_(system, picture.q), shapes_(model_) {
     if (picture.at_start) moved_ = given_.moved();
   }
 
@@ -40,6 +41,7 @@ class Drawing {
     for (const Trace& trace : picture_.traces) draw_trace(trace);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) draw_body(static_cast<BodyId>(b));
     for (const JointElement& joint : model_.joints) draw_joint(joint);
+    for (const JointShape& shape : shapes_.all()) draw_shape(shape);
     for (const AppliedForce& force : model_.forces) draw_force(force);
     draw_frames();
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) out_.centre(page({q_[3 * b], q_[3 * b + 1]}));
@@ -66,11 +68,16 @@ class Drawing {
     return {q[3 * b] + c * arm.x - s * arm.y, q[3 * b + 1] + s * arm.x + c * arm.y};
   }
 
-  /// Points of a body that a joint or a force is at, and its centre of mass.
+  /// Points of a body that a joint or a force is at, those of outlines, and its centre of mass.
   std::vector<Point> points_of(BodyId id, std::span<const double> q) const {
     std::vector<Point> points;
-    for (const Marker& one : model_.markers) {
-      if (one.body == id) points.push_back(world(id, {one.position[0], one.position[1]}, q));
+    for (std::size_t m = 0; m < model_.markers.size(); ++m) {
+      const Marker& one = model_.markers[m];
+      if (one.body == id && !shapes_.stands_for(m)) points.push_back(world(id, {one.position[0], one.position[1]}, q));
+    }
+    for (const JointShape& shape : shapes_.all()) {
+      if (marker(shape.marker).body != id) continue;
+      for (const Point& p : shape.points) points.push_back(world(id, p, q));
     }
     const std::size_t b = static_cast<std::size_t>(id);
     points.push_back({q[3 * b], q[3 * b + 1]});
@@ -105,6 +112,9 @@ class Drawing {
       const std::vector<Point> points = points_of(id, q);
       all.insert(all.end(), points.begin(), points.end());
     };
+    for (const JointShape& shape : shapes_.all()) {
+      for (const Point& p : shape.points) all.push_back(world(marker(shape.marker).body, p));
+    }
     for (const BodyId id : moved_) add(id, given_.q());
     for (const std::vector<double>& q : picture_.others) {
       for (std::size_t b = 0; b < model_.bodies.size(); ++b) add(static_cast<BodyId>(b), q);
@@ -292,7 +302,7 @@ class Drawing {
       if (const auto stops = stops_of(joint)) {
         const double turn = angle_of(a);
         draw_stops(out_, *stops, from, {std::cos(turn), -std::sin(turn)}, {-std::sin(turn), -std::cos(turn)}, scale_);
-      } else {
+      } else if (joint.layout.outlines.empty()) {
         out_.spring(from, to);
       }
       out_.label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
@@ -365,6 +375,14 @@ class Drawing {
     out_.block(to, 11.0);
   }
 
+  void draw_shape(const JointShape& shape) {
+    std::vector<Point> points;
+    for (const Point& p : shape.points) points.push_back(page(world(marker(shape.marker).body, p)));
+    for (std::size_t i = 1; i < points.size(); ++i) out_.shun(points[i - 1], points[i]);
+    out_.shape("<path class=\"outline\" d=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"2\"/>\n",
+               svg::path(points));
+  }
+
   void draw_force(const AppliedForce& force) {
     const Point at = page(world(marker(force.marker)));
     out_.circle(at, 8.0, "fill=\"none\" stroke=\"#ee7733\" stroke-width=\"1.5\" stroke-dasharray=\"2 2\"");
@@ -393,6 +411,7 @@ class Drawing {
   std::span<const double> q_;
   GivenStart given_;
   std::span<const BodyId> moved_;
+  JointShapes shapes_;
   double scale_ = 1.0, height_ = least_height;
   double largest_pitch_ = 0.0;  // [m]
   Point middle_;

@@ -149,6 +149,17 @@ class Gallery(ProgramTest):
         columns = self.run_file("valve-train")
         self.assertAlmostEqual(0.039, max(columns["body.valve.y"]), delta=1e-5)
         self.assertGreater(min(columns["joint.roller.normal_force"]), 0)
+        # While the valve is shut the spring swings on as a chain of eight masses between fixed ends does.
+        slowest = 2 * math.sqrt(30e3 * 9 / (0.06 / 8)) * math.sin(math.pi / 18)
+        force, times = columns["force.head.fy"], columns["time"]
+        peaks = [times[k] for k in range(420, 620) if force[k - 1] < force[k] >= force[k + 1]]
+        self.assertAlmostEqual(2 * math.pi / slowest, (peaks[-1] - peaks[0]) / (len(peaks) - 1), delta=3e-5)
+
+    def test_a_geneva_wheel_turns_by_a_quarter_and_rests(self):
+        columns = self.run_file("geneva")
+        for t, angle in zip(columns["time"], columns["joint.wheel.angle"]):
+            if t % 1 < 0.1 or t % 1 > 0.45:
+                self.assertAlmostEqual(-math.pi / 2 * math.floor(t + 0.6), angle, delta=2e-3)
 
     def test_a_strand_goes_slack_in_the_jerk_of_a_start(self):
         columns = self.run_file("belt-drive")

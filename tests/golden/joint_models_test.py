@@ -7,6 +7,34 @@ from model_cases import EXACT, ModelTest
 G = 9.81
 
 
+class Bushings(ModelTest):
+    TEXT = """
+bodies:
+  ground: {frames: {bed: {angle: 30 deg}}}
+  engine: {mass: 20, inertia: 0.5, frames: {foot: {angle: 30 deg}}, pose: {position: [%r, %r], angle: 0.1}}
+forces:
+  bed: {type: bushing, between: [ground/bed, engine/foot], stiffness: {x: 2000, y: 18000, %s: 50}, damping: {x: 40, turn_z: 0.2}}
+simulation: {end: 0.5 s, output: {interval: 5 ms}, %s}
+"""
+
+    def test_a_body_on_an_elastic_bed_swings_along_each_axis_of_the_bed_by_itself(self):
+        c, s = math.cos(math.radians(30)), math.sin(math.radians(30))
+        columns = self.run_model(self.TEXT % (c * 1e-3 - s * 2e-3, s * 1e-3 + c * 2e-3, "turn_z", EXACT))
+
+        def damped(start, mass, k, d):
+            w, fall = math.sqrt(k / mass - (d / (2 * mass)) ** 2), d / (2 * mass)
+            return lambda t: start * math.exp(-fall * t) * (math.cos(w * t) + fall / w * math.sin(w * t))
+        along, across = damped(1e-3, 20, 2000, 40), damped(2e-3, 20, 18000, 0)
+        self.assert_column(columns, "body.engine.x", lambda t: c * along(t) - s * across(t))
+        self.assert_column(columns, "body.engine.y", lambda t: s * along(t) + c * across(t))
+        self.assert_column(columns, "body.engine.angle", damped(0.1, 0.5, 50, 0.2))
+
+    def test_what_acts_out_of_the_plane_is_refused_in_it(self):
+        for key in ("z", "turn_x"):
+            errors = self.refusal(self.TEXT % (0, 0, key, ""), line=6)
+            self.assertIn("in the plane", str(errors))
+
+
 class Gears(ModelTest):
     def test_a_rack_falls_against_the_inertia_of_its_pinion(self):
         text = """

@@ -392,6 +392,8 @@ class Page(SpatialTest):
             "joint-friction": ", friction: 1", "joint-stop": ", lower: -2, upper: 2, stiffness: 1",
             "screw": ", lead: 1 mm", "revolute-spherical": ", length: 1", "point-on-curve": ", curve: x",
             "point-on-curve-lift-off": ", curve: x, lift_off: {contact: {law: hertz, K: 1e8}}",
+            "slot-contact": ", width: 22 mm, pin_radius: 1 cm, bottom: 1 cm, mouth: 1 m, contact: {law: hertz, K: 1e8}",
+            "arc-contact": ", first: {radius: 1}, second: {radius: 1}, contact: {law: hertz, K: 1e8}",
             "brake": ", limit: 1, stiffness: 1", "one-way-clutch": ", stiffness: 1",
             "belt": ", first_radius: 1, second_radius: 1, stiffness: 1",
             "revolute-clearance": ", clearance: {radial_clearance: 1 mm, length: 1 cm, contact: {law: hertz, K: 1e8}}",

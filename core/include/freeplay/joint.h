@@ -83,6 +83,12 @@ enum class PlayShape : std::uint32_t {
   walls           ///< as far as `clearance` to both sides of the x axis of a, and anywhere along it
 };
 
+/// A line on one of the two bodies, for pictures of planar models: as the wall of a slot.
+struct BodyLine {
+  std::uint32_t on_second;    ///< nonzero: on the second body
+  Span<const double> points;  ///< x and y of one point after the other, in the axes of the marker there [m]
+};
+
 /// What a joint asks of the model, answered once, before the layout of the state is fixed.
 struct JointLayout {
   std::uint32_t size = sizeof(JointLayout);
@@ -123,6 +129,7 @@ struct JointLayout {
   PlayShape play_shape = PlayShape::by_coordinate;
   double contact_reach = 0.0;  ///< between walls: most by which a depth changes with the angle of b, as by corners that
                                ///< stand so far from its origin [m]
+  Span<const BodyLine> outlines;  ///< drawn in place of a symbol; they live as long as the joint
 };
 
 /// Everything a joint may read. All views are valid during the call only.
