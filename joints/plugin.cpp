@@ -18,6 +18,7 @@ Component cylindrical();
 Component planar_joint();
 Component spherical_clearance();
 Component cylindrical_clearance();
+Component universal_clearance();
 Component bushing();
 Component joint_friction();
 Component joint_stop();
@@ -51,6 +52,7 @@ FREEPLAY_PLUGIN(joints) {
                                          planar_joint(),
                                          spherical_clearance(),
                                          cylindrical_clearance(),
+                                         universal_clearance(),
                                          bushing(),
                                          joint_friction(),
                                          joint_stop(),

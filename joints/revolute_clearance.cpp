@@ -324,15 +324,7 @@ class RevoluteClearance final : public Joint {
   Start start_;
 };
 
-constexpr Parameter bearing_rows[] = {
-    length("clearance.length", "Axial length of the contact, for laws that need it; in space that of the bearing."),
-    {.name = "clearance.axial_clearance",
-     .unit = "m",
-     .default_value = optional,
-     .minimum = 0.0,
-     .summary = "Spatial models: play of the journal's shoulders along the axis, to each side; the radial clearance "
-                "unless given."}};
-constexpr auto revolute_clearance_parameters = joined(radius_rows, bearing_rows, law_rows, start_rows);
+constexpr auto revolute_clearance_parameters = joined(radius_rows, bearing_length_rows, law_rows, start_rows);
 
 }  // namespace
 

@@ -175,7 +175,8 @@ class Sampler {
     if (p.kind == ParameterKind::choice) {
       value.word = by_default ? static_cast<int>(p.default_value) : 0;
     } else if (p.kind == ParameterKind::vector) {
-      value.vector = {0.5 * size, -0.3 * size, 0.0};
+      value.vector = {within(p, unit.factor, 0.5 * size), within(p, unit.factor, -0.3 * size),
+                      within(p, unit.factor, 0.0)};
     } else if (p.kind == ParameterKind::function) {
       const auto function = std::make_shared<const SampleFunction>(SampleFunction{size});
       value.function = {&evaluate_sample, function.get()};

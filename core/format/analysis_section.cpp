@@ -48,9 +48,7 @@ void read_error(Draft& draft, const CheckedValue& value) {
       const std::optional<double> radius = entry.quantity(dimension::length, not_negative);
       const std::optional<int> joint = draft.find_joint(entry.key(), draft.parts.front());
       if (joint && radius) analysis.clearance.emplace_back(*joint, *radius);
-      if (joint || draft.excused(entry.key())) continue;
-      entry.fail_at_key("unknown-name", "unknown joint '" + entry.key() + "'",
-                        nearest(entry.key(), draft.joints.names()));
+      if (!joint) draft.unknown_joint(entry, entry.key(), draft.parts.front(), true);
     }
   }
   if (input) read_input_error(analysis, *input);

@@ -239,13 +239,13 @@ std::optional<std::vector<CheckedValue>> CheckedValue::one_or_list() const {
   return std::nullopt;
 }
 
-std::optional<Vector3> CheckedValue::vector(const Dimension& dimension) const {
+std::optional<Vector3> CheckedValue::vector(const Dimension& dimension, const Range& range) const {
   const auto items = list(reading_->dimensions);
   if (!items) return std::nullopt;
   Vector3 vector{};
   bool good = true;
   for (std::size_t i = 0; i < items->size(); ++i) {
-    const std::optional<double> component = (*items)[i].quantity(dimension);
+    const std::optional<double> component = (*items)[i].quantity(dimension, range);
     good = good && component.has_value();
     if (component) vector[i] = *component;
   }

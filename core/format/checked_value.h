@@ -48,7 +48,7 @@ class CheckedValue : public LocatedValue {
   std::optional<int> word(const std::vector<std::string>& words) const;
   bool in_space() const { return reading_->dimensions == 3; }
   /// As many quantities as the space has dimensions; the rest is zero.
-  std::optional<Vector3> vector(const Dimension& dimension) const;
+  std::optional<Vector3> vector(const Dimension& dimension, const Range& range = {}) const;
   /// Exactly `length` quantities.
   std::optional<std::vector<double>> quantities(std::size_t length, const Dimension& dimension) const;
   std::optional<std::vector<CheckedValue>> list() const;

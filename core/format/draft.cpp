@@ -62,7 +62,7 @@ bool Draft::excused(const std::string& name) const {
 }
 
 void Draft::unknown(const CheckedValue& value, const char* kind, const std::string& name, const NameTable& table,
-                    const Part& part) const {
+                    const Part& part, bool at_key) const {
   if (excused(name)) return;
   std::vector<std::string> candidates;
   const bool few = table.names().size() <= most_candidates;
@@ -71,7 +71,8 @@ void Draft::unknown(const CheckedValue& value, const char* kind, const std::stri
     candidates.push_back(full);
   }
   if (&table == &bodies) candidates.push_back("ground");
-  value.fail("unknown-name", std::string("unknown ") + kind + " '" + name + "'", nearest(name, candidates));
+  const std::string message = std::string("unknown ") + kind + " '" + name + "'", meant = nearest(name, candidates);
+  at_key ? value.fail_at_key("unknown-name", message, meant) : value.fail("unknown-name", message, meant);
 }
 
 const std::string& Draft::body_name(BodyId id) const {
@@ -86,6 +87,15 @@ std::optional<BodyId> Draft::find_body(const std::string& name, const Part& part
 
 std::optional<int> Draft::find_joint(const std::string& name, const Part& part) const {
   return look_up(joints, name, part);
+}
+
+void Draft::unknown_joint(const CheckedValue& value, const std::string& name, const Part& part, bool at_key) const {
+  const bool is_own = !is_dotted(name) && divided.contains(part.full(name));
+  const auto whole = divided.find(is_own ? part.full(name) : name);
+  if (whole == divided.end()) return unknown(value, "joint", name, joints, part, at_key);
+  const std::string message = "joint '" + name + "' with play is two joints and has no coordinate of its own";
+  at_key ? value.fail_at_key("unknown-name", message, {}, whole->second)
+         : value.fail("unknown-name", message, {}, whole->second);
 }
 
 const std::string* Draft::lone_frame(const std::string& name) const {
@@ -112,7 +122,7 @@ std::optional<int> Draft::joint(const CheckedValue& value, const Part& part) con
   const std::optional<std::string> name = value.reference();
   if (!name) return std::nullopt;
   const std::optional<int> found = find_joint(*name, part);
-  if (!found) unknown(value, "joint", *name, joints, part);
+  if (!found) unknown_joint(value, *name, part);
   if (found) value.note_names({joints.names()[static_cast<std::size_t>(*found)]});
   return found;
 }

@@ -38,8 +38,9 @@ struct Draft {
   std::vector<std::string> unsure_columns;
 
   NameTable bodies, joints, drivers, forces;
-  std::vector<bool> joint_usable;   ///< false: its own mistakes were reported, its coordinate is unknown
-  std::vector<bool> ideal_matched;  ///< by index of options.ideal
+  std::map<std::string, std::string> divided;  ///< joints with play that are two joints: what to write for it
+  std::vector<bool> joint_usable;              ///< false: its own mistakes were reported, its coordinate is unknown
+  std::vector<bool> ideal_matched;             ///< by index of options.ideal
 
   std::map<std::string, std::unique_ptr<const CsvText>> tables;  ///< files with tables, by path
   /// What drivers have made of them, by all that it depends on; the instances of a template share theirs.
@@ -78,6 +79,8 @@ struct Draft {
   /// The same for names that are at hand; nothing is reported.
   std::optional<BodyId> find_body(const std::string& name, const Part& part) const;
   std::optional<int> find_joint(const std::string& name, const Part& part) const;
+  /// Reports a joint that there is not, at `value` or at its key.
+  void unknown_joint(const CheckedValue& value, const std::string& name, const Part& part, bool at_key = false) const;
 
   /// BODY/FRAME of the only frame that is called so, of whatever body; null where there is none or more than one. All
   /// frames are known.
@@ -96,7 +99,7 @@ struct Draft {
  private:
   mutable std::unordered_map<std::string, std::string> lone_frames_;  ///< by name; empty text: several
   void unknown(const CheckedValue& value, const char* kind, const std::string& name, const NameTable& table,
-               const Part& part) const;
+               const Part& part, bool at_key = false) const;
   std::optional<std::string> frame_name(const CheckedValue& value, const std::string& reference,
                                         const Part& part) const;
 };

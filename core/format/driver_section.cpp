@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "format/joint_section.h"
 #include "format/kinematics_keys.h"
 #include "format/motion_names.h"
 #include "format/table_keys.h"
@@ -178,14 +179,15 @@ class DriverEntry {
 
   /// Has the joint a coordinate of its own? Reports at `clearance_place` or `place` when not.
   bool may_be_driven(int joint, const CheckedValue& place, const CheckedValue& clearance_place) const {
-    if (element(joint).has_play && element(joint).layout.coordinate == Coordinate::none) {
-      clearance_place.fail("driver-on-clearance",
-                           "joint '" + element(joint).name + "' has clearance, which leaves no coordinate to drive", {},
-                           "--ideal closes it");
+    if (element(joint).ideal_layout.coordinate == Coordinate::none) {
+      place.fail("wrong-type", "joint '" + element(joint).name + "' has no coordinate that could be driven", {},
+                 coordinate_hint(*element(joint).ideal_component));
       return false;
     }
-    if (element(joint).ideal_layout.coordinate != Coordinate::none) return true;
-    place.fail("wrong-type", "joint '" + element(joint).name + "' has no coordinate that could be driven");
+    if (!element(joint).has_play || element(joint).layout.coordinate != Coordinate::none) return true;
+    clearance_place.fail("driver-on-clearance",
+                         "joint '" + element(joint).name + "' has clearance, which leaves no coordinate to drive", {},
+                         "--ideal closes it");
     return false;
   }
 

@@ -2,6 +2,7 @@
 
 #include "format/doubtful_number.h"
 #include "format/gear_teeth.h"
+#include "format/joint_section.h"
 #include "format/loose_gear.h"
 #include "freeplay/plugin.h"
 
@@ -103,7 +104,8 @@ class GearEntry {
     const std::optional<int> joint = draft_.joint(value, part_);
     if (!joint || !draft_.joint_usable[static_cast<std::size_t>(*joint)]) return std::nullopt;
     if (element(*joint).ideal_layout.coordinate != Coordinate::none) return joint;
-    value.fail("wrong-type", "joint '" + element(*joint).name + "' has no coordinate that a gear could couple");
+    value.fail("wrong-type", "joint '" + element(*joint).name + "' has no coordinate that a gear could couple", {},
+               coordinate_hint(*element(*joint).ideal_component));
     return std::nullopt;
   }
 

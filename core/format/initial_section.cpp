@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "format/doubtful_number.h"
+#include "format/joint_section.h"
 
 namespace freeplay {
 namespace {
@@ -28,16 +29,14 @@ Dimension dimension_of(Coordinate coordinate, StartKind what) {
 void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
   const std::string name = value.key();
   const std::optional<int> joint = draft.find_joint(name, draft.parts.front());
-  if (!joint) {
-    if (draft.excused(name)) return;
-    return value.fail_at_key("unknown-name", "unknown joint '" + name + "'", nearest(name, draft.joints.names()));
-  }
+  if (!joint) return draft.unknown_joint(value, name, draft.parts.front(), true);
   const std::size_t index = static_cast<std::size_t>(*joint);
   if (!draft.joint_usable[index]) return;
   JointElement& element = draft.model.joints[index];
   const Coordinate coordinate = element.ideal_layout.coordinate;
   if (coordinate == Coordinate::none) {
-    return value.fail_at_key("wrong-type", "joint '" + name + "' has no coordinate that could have a start value");
+    return value.fail_at_key("wrong-type", "joint '" + name + "' has no coordinate that could have a start value", {},
+                             coordinate_hint(*element.ideal_component));
   }
   const std::optional<double> number = value.quantity(dimension_of(coordinate, what));
   if (is_prescribed(draft, *joint, what)) {

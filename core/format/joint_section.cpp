@@ -7,7 +7,9 @@
 #include "component/declared.h"
 #include "format/doubtful_number.h"
 #include "format/gear.h"
+#include "format/joint_chain.h"
 #include "format/parameter_check.h"
+#include "format/parameter_tree.h"
 #include "format/rotation_keys.h"
 #include "model/rotation.h"
 
@@ -188,6 +190,13 @@ class JointEntry {
     const CheckedParameters ideal_parameters = check_parameters(*ideal_, map_, draft_.registry);
     const bool twins = ideal_ != component_;
     const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal, element().ideal_layout);
+    if (component_->description.chain != nullptr && !element().is_force) {
+      element().component = element().ideal_component = ideal_;
+      element().joint = element().ideal = ideal;
+      element().layout = element().ideal_layout;
+      if (usable && known_) create_chain(*ideal_parameters.block);
+      return;
+    }
     JointLayout layout = element().ideal_layout;
     joint = ideal;
     const CheckedParameters parameters =
@@ -209,6 +218,19 @@ class JointEntry {
     if (twins) doubt_play(layout);
     if (twins && parameters.block) doubt_inside(parameters, layout);
     draft_.joint_usable[index_] = usable && known_;
+  }
+
+  void create_chain(const ParameterBlock& ideal) {
+    const CheckedParameters parameters = check_parameters(*component_, map_, draft_.registry);
+    JointRef judge;
+    JointLayout nothing;
+    if (!make_joint(draft_, parameters, entry_, judge, nothing)) return;
+    doubt_parameters(*parameters.block, parameters.places, draft_.length_scale, bare_limit::bearing);
+    const auto coordinate = ideal.values.find(std::string_view(component_->description.chain->coordinate));
+    const int which = coordinate == ideal.values.end() ? 0 : coordinate->second.word;
+    if (!make_chain(draft_, *component_, parameters, which, entry_, index_)) return;
+    doubt_play(element().layout);
+    doubt_inside(parameters, element().layout);
   }
 
   void doubt_play(const JointLayout& layout) {
@@ -289,6 +311,17 @@ bool is_made_ideal(Draft& draft, const std::string& name) {
     made = true;
   }
   return made;
+}
+
+std::string coordinate_hint(const Component& type) {
+  for (const Parameter& parameter : type.description.parameters) {
+    if (parameter.kind != ParameterKind::choice || std::string_view(parameter.name) != "coordinate") continue;
+    std::vector<std::string> keys = words_of(parameter);
+    std::erase(keys, "none");
+    for (std::string& word : keys) word = "'coordinate: " + word + "'";
+    return "write " + either(keys) + " at the joint";
+  }
+  return {};
 }
 
 bool make_joint(Draft& draft, const CheckedParameters& parameters, const CheckedValue& entry, JointRef& joint,

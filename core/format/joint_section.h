@@ -16,6 +16,8 @@ void add_force_joint(Draft& draft, const Part& part, const CheckedValue& entry);
 bool serves(Space space, Space model_space);
 /// Was the joint of this name asked for without play?
 bool is_made_ideal(Draft& draft, const std::string& name);
+/// What to write where a joint of the type has no coordinate; empty where it cannot have one.
+std::string coordinate_hint(const Component& type);
 /// The joint of these parameters and what it declares; false after a mistake in them. Throws Error{plugin}.
 bool make_joint(Draft& draft, const CheckedParameters& parameters, const CheckedValue& entry, JointRef& joint,
                 JointLayout& layout);

@@ -20,6 +20,17 @@ class NameTable {
     }
     return fresh;
   }
+  /// The thing `index` is called `name` from now on; false when that is taken.
+  bool rename(int index, const std::string& name) {
+    if (!index_.emplace(name, index).second) return false;
+    std::string& old = names_[static_cast<std::size_t>(index)];
+    index_.erase(old);
+    characters_ += name.size() - old.size();
+    old = name;
+    return true;
+  }
+  /// Another word for the thing `index`, where it is free.
+  void also(const std::string& name, int index) { index_.emplace(name, index); }
   std::optional<int> find(const std::string& name) const {
     const auto found = index_.find(name);
     return found == index_.end() ? std::nullopt : std::optional<int>(found->second);

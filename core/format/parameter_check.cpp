@@ -176,7 +176,7 @@ class ParameterCheck {
       case ParameterKind::choice:
         return read_word(parameter, written, value);
       case ParameterKind::vector:
-        return read_vector(unit, written, value);
+        return read_vector(parameter, unit, written, value);
       case ParameterKind::function:
         return read_function(unit, written, value);
       case ParameterKind::formula:
@@ -191,6 +191,10 @@ class ParameterCheck {
   static bool is_word(const Node& node) {
     const auto letter = [](unsigned char c) { return std::isalpha(c) || c == '-' || c == '_'; };
     return node.is_scalar() && !node.text.empty() && std::ranges::all_of(node.text, letter);
+  }
+
+  static Range range_of(const Parameter& parameter, const Unit& unit) {
+    return {parameter.minimum * unit.factor, parameter.maximum * unit.factor, parameter.open};
   }
 
   static bool read_number(const Parameter& parameter, const Unit& unit, const CheckedValue& written,
@@ -209,8 +213,7 @@ class ParameterCheck {
           meant);
       return false;
     }
-    const Range range{parameter.minimum * unit.factor, parameter.maximum * unit.factor, parameter.open};
-    const std::optional<double> number = written.quantity(unit.dimension, range);
+    const std::optional<double> number = written.quantity(unit.dimension, range_of(parameter, unit));
     if (number) value.number = *number;
     return number.has_value();
   }
@@ -233,8 +236,9 @@ class ParameterCheck {
     return word.has_value();
   }
 
-  static bool read_vector(const Unit& unit, const CheckedValue& written, ParameterValue& value) {
-    const std::optional<Vector3> vector = written.vector(unit.dimension);
+  static bool read_vector(const Parameter& parameter, const Unit& unit, const CheckedValue& written,
+                          ParameterValue& value) {
+    const std::optional<Vector3> vector = written.vector(unit.dimension, range_of(parameter, unit));
     if (vector) value.vector = *vector;
     return vector.has_value();
   }

@@ -200,7 +200,12 @@ TEST(SampleParameters, StayWithinBoundsLong) {
     EXPECT_FALSE(found.accepted.empty()) << entry.component->description.name << ": " << found.refusal;
     for (const ParameterSample& sample : found.accepted) {
       for (const Parameter& p : entry.component->description.parameters) {
-        const double number = sample.block->values.at(p.name).number;
+        const ParameterValue& value = sample.block->values.at(p.name);
+        const double number = value.number;
+        if (p.kind == ParameterKind::vector && value.given && p.minimum == 0.0) {
+          for (const double one : value.vector)
+            EXPECT_GT(one, 0.0) << entry.component->description.name << " " << p.name;
+        }
         if (p.kind != ParameterKind::number || std::string_view(p.unit) != "1" || std::isnan(number)) continue;
         EXPECT_GE(number, p.minimum) << entry.component->description.name << " " << p.name;
         EXPECT_LE(number, p.maximum) << entry.component->description.name << " " << p.name;

@@ -400,7 +400,8 @@ class Page(SpatialTest):
             "point-on-line-clearance": ", clearance: {gap: 1 mm, contact: {law: hertz, K: 1e8}}",
             "prismatic-clearance": ", clearance: {gap: 1 mm, length: 20 mm, width: 1 cm, height: 1 cm, contact: {law: hertz, K: 1e8}}",
             "spherical-clearance": ", clearance: {radial_clearance: 1 mm, contact: {law: hertz, K: 1e8}}",
-            "cylindrical-clearance": ", clearance: {radial_clearance: 1 mm, length: 2 cm, contact: {law: hertz, K: 1e8}}"}
+            "cylindrical-clearance": ", clearance: {radial_clearance: 1 mm, length: 2 cm, contact: {law: hertz, K: 1e8}}",
+            "universal-clearance": ", clearance: {radial_clearance: 1 mm, length: 2 cm, contact: {law: hertz, K: 1e8}, cross: {mass: 1, inertia: [1, 1, 1]}}"}
     ROW = re.compile(r"^\| `([-a-z]+)` \| (\d|-)?(?:, (\d|-)|0 in space) \| (angle|position|none) \|", re.M)
 
     def test_rows_and_coordinates_are_as_said(self):

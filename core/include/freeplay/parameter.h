@@ -50,7 +50,8 @@ enum class Open : std::uint32_t { none = 0, minimum = 1, maximum = 2, both = 3 }
 /// a map. `unit` is a unit of the model format; "1" is dimensionless; an exponent may name another number of
 /// the table: "N/m^exponent"; "kind: N/m | N*m/rad" has a unit for each word of the choice `kind`. A default of
 /// `required` or `optional` applies to every kind; for a choice any other default is the index of the word; for a
-/// law, `preferred` of that kind is used when it is absent and not required. Default and bounds are in `unit`.
+/// law, `preferred` of that kind is used when it is absent and not required. Default and bounds are in `unit`; those
+/// of a vector hold for each of its numbers.
 struct Parameter {
   const char* name;
   ParameterKind kind = ParameterKind::number;

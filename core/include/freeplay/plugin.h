@@ -31,6 +31,23 @@ JointFace joint_face() {
 /// An axis of a joint's markers.
 enum class MarkerAxis : std::uint32_t { none = 0, x = 1, z = 3 };
 
+/// One of the joints of a JointChain.
+struct JointPart {
+  const char* name;  ///< the whole joint's name, a dot and this are its own
+  const char* type;  ///< a type with play; what its parameters are called like in the whole type's block it takes over
+  double axis[3];    ///< its axis in the frames of both of its ends
+};
+
+/// What stands for a joint with play that is two joints about a body of its own, as the cross of a universal joint.
+struct JointChain {
+  JointPart first, second;  ///< from the first end to the body, and from the body to the second end
+  const char* body;         ///< the whole joint's name, a dot and this are the body's
+  const char* mass;         ///< the parameter that is its mass [kg]
+  const char* inertia;      ///< the parameter, a vector, with its moments about the axes of its frame [kg m^2]
+  /// A word of the ideal type, none, first or second: the part whose coordinate the whole joint's name means.
+  const char* coordinate;
+};
+
 /// What the host knows of a type before it creates an instance; texts are for `freeplay list` and `describe`.
 struct Description {
   const char* name;             ///< the word in a model file, kebab-case
@@ -57,6 +74,8 @@ struct Description {
   MarkerAxis axis = MarkerAxis::none;
   /// Joints with `space` both: the class for spatial models where it is not the component's own.
   JointFace in_space = {};
+  /// Joints with play: the model has these joints instead. The class of the type then only judges the parameters.
+  const JointChain* chain = nullptr;
 };
 
 /// One row of a plugin's table.
