@@ -14,6 +14,7 @@
 
 #include "base/expression.h"
 #include "base/expression_names.h"
+#include "base/speed_law.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "base/token.h"
@@ -41,6 +42,7 @@ class ExpressionCompiler : ExpressionNames {
   using Operation = Expression::Operation;
 
   static constexpr int longest = 10000;
+  static constexpr std::size_t longest_of_law = 200;  ///< instructions, which stand in it some ten times
 
   // --- grammar
 
@@ -287,6 +289,7 @@ class ExpressionCompiler : ExpressionNames {
     if (const Function* function = find_function(name); function && peek() == '(') {
       return function->operation == Operation::choose ? choice(begin) : call(*function, begin);
     }
+    if (is_speed_law(name) && peek() == '(') return travel(name, begin);
     Operand operand;
     operand.begin = begin;
     operand.end = end;
@@ -331,6 +334,71 @@ class ExpressionCompiler : ExpressionNames {
     return folds ? result : emit(function.operation, result, begin, name_end);
   }
 
+  /// trapezoid(x, start, end, ramp) and s_curve(x, start, end, ramp, rise): x is copied to wherever the law needs it.
+  Operand travel(std::string_view name, std::size_t begin) {
+    const auto first = static_cast<std::ptrdiff_t>(expression_.program_.size());
+    const std::vector<Operand> arguments = law_arguments(name, begin);
+    const SpeedLaw law = speed_law(name, arguments);
+    const std::vector<Expression::Instruction> x(expression_.program_.begin() + first, expression_.program_.end());
+    expression_.program_.erase(expression_.program_.begin() + first, expression_.program_.end());
+    --depth_;
+    if (x.size() > longest_of_law) fail("bad-expression", begin, position_, "what this function is of is too long");
+    const std::size_t end = begin + name.size();
+    constexpr std::array operation_of{Operation::minimum, Operation::maximum, Operation::subtract, Operation::multiply,
+                                      Operation::add};
+    for (const auto& [step, constant] : law.program()) {
+      if (step == SpeedLaw::Step::argument) {
+        for (const Expression::Instruction& instruction : x) append(instruction);
+      } else if (step == SpeedLaw::Step::constant) {
+        push(constant, begin, end);
+      } else {
+        emit(operation_of[static_cast<std::size_t>(step)], arguments.front(), begin, end);
+      }
+    }
+    Operand result;
+    result.depends_on_time = arguments.front().depends_on_time;
+    result.begin = begin;
+    result.end = position_;
+    return result;
+  }
+
+  /// The first may depend on time, the others are constant: each is one push.
+  std::vector<Operand> law_arguments(std::string_view name, std::size_t begin) {
+    const std::size_t open = position_, most = name == s_curve_name ? 5 : 4;
+    enter(open);
+    std::vector<Operand> arguments;
+    Operand all;
+    for (bool more = true; more;) {
+      arguments.push_back(sum());
+      const Operand& argument = arguments.back();
+      all = arguments.size() > 1 ? agree(all, argument) : argument;
+      if (arguments.size() > 1 && argument.depends_on_time) {
+        fail("bad-expression", argument.begin, argument.end,
+             fmt::format("what follows the first argument of '{}' must be constant", name));
+      }
+      more = peek() == ',';
+      if (more && arguments.size() == most) fail_at_comma();
+      if (more) ++position_;
+    }
+    leave(open);
+    if (arguments.size() >= 4) return arguments;
+    fail("bad-expression", begin, position_, fmt::format("'{}' needs 4{} arguments", name, most == 5 ? " or 5" : ""));
+  }
+
+  /// By the constants at the end of the program, which are taken off.
+  SpeedLaw speed_law(std::string_view name, const std::vector<Operand>& arguments) {
+    std::array<double, 4> numbers{};
+    for (std::size_t i = arguments.size() - 1; i-- > 0; pop()) numbers[i] = expression_.program_.back().constant;
+    const bool curved = name == s_curve_name;
+    if (curved && arguments.size() < 5) numbers[3] = 0.5 * numbers[2];
+    const SpeedLaw law{numbers[0], numbers[1], numbers[2], numbers[3]};
+    if (const std::optional<SpeedLaw::Flaw> flaw = law.flaw(curved)) {
+      const Operand& wrong = arguments[std::min(flaw->which + 1, arguments.size() - 1)];
+      fail("bad-expression", wrong.begin, wrong.end, fmt::format("{}: {}", name, flaw->reason));
+    }
+    return law;
+  }
+
   // --- units
 
   /// The operand with the unit that may follow it.
@@ -339,7 +407,7 @@ class ExpressionCompiler : ExpressionNames {
     const std::size_t begin = position_, end = word_end(text_, begin);
     if (end == begin) return operand;
     const std::string_view name = text_.substr(begin, end - begin);
-    if (name == "t" || name == "pi" || find_function(name)) fail_at_rest();
+    if (name == "t" || name == "pi" || is_function(name)) fail_at_rest();
     if (operand.dimensioned()) fail("bad-unit", begin, end, "what is in the parentheses has a unit already");
     const Unit unit = parse_unit_at(text_, position_);
     Operand result = operand;
@@ -363,65 +431,7 @@ class ExpressionCompiler : ExpressionNames {
     return operand;
   }
 
-  // --- program
-
-  Operand raise(const Operand& base, const Operand& exponent, std::size_t caret) {
-    if (exponent.dimensioned()) {
-      fail("dimension-mismatch", exponent.begin, exponent.end, "an exponent must be a number without a unit");
-    }
-    const bool plain = exponent.kind == DimensionKind::plain;
-    if (base.dimensioned() && (!plain || exponent.depends_on_time)) {
-      fail("dimension-mismatch", exponent.begin, exponent.end,
-           "the exponent of a value with a unit must consist of numbers");
-    }
-    Operand result = join(base, exponent);
-    result.kind = plain ? base.kind : DimensionKind::free;
-    if (exponent.depends_on_time) return emit(Operation::power, result, caret, caret + 1);
-    const double n = expression_.program_.back().constant;
-    if (base.dimensioned()) result.dimension = power(base.dimension, n);
-    pop();
-    return emit(Operation::power_constant, result, caret, caret + 1, n);
-  }
-
-  void push(double constant, std::size_t begin, std::size_t end) {
-    append({Operation::push_constant, constant, characters(0, begin), characters(begin, end)});
-  }
-
-  void pop() {
-    expression_.program_.pop_back();
-    --depth_;
-  }
-
-  /// Appends an operation on the values at the top of the stack, or its result when they are constant.
-  Operand emit(Operation operation, const Operand& result, std::size_t begin, std::size_t end, double constant = 0.0) {
-    const Expression::Instruction instruction{operation, constant, characters(0, begin), characters(begin, end)};
-    if (result.depends_on_time) {
-      append(instruction);
-      return result;
-    }
-    // A constant operand is always a single push, so the operands are the last instructions.
-    const int count = Expression::operand_count(operation);
-    std::array<Jet, 4> operands{};
-    for (int i = count; i-- > 0; pop()) {
-      operands[static_cast<std::size_t>(i)] = Jet::constant(expression_.program_.back().constant);
-    }
-    EvaluationFailure failure;
-    if (!expression_.apply(instruction, operands.data(), failure)) {
-      throw ExpressionError(failure.id, failure.reason, failure.offset, failure.length);
-    }
-    append({Operation::push_constant, operands[0].value, instruction.offset, instruction.length});
-    return result;
-  }
-
-  void append(const Expression::Instruction& instruction) {
-    expression_.program_.push_back(instruction);
-    depth_ += 1 - Expression::operand_count(instruction.operation);
-    expression_.stack_depth_ = std::max(expression_.stack_depth_, depth_);
-  }
-
   bool time_allowed_;
-  int depth_ = 0;
-  Expression expression_;
 };
 
 bool is_formula_word(std::string_view word) { return ExpressionNames::is_word(word); }

@@ -16,7 +16,7 @@ namespace freeplay {
 
 class ExpressionNames : protected ExpressionOperands {
  public:
-  static bool is_word(std::string_view word) { return word == "t" || word == "pi" || find_function(word) != nullptr; }
+  static bool is_word(std::string_view word) { return word == "t" || word == "pi" || is_function(word); }
 
  protected:
   ExpressionNames(std::string_view text, const Scope& scope, const FormulaVariables* variables)
@@ -30,7 +30,7 @@ class ExpressionNames : protected ExpressionOperands {
   [[noreturn]] void fail_at_word(std::string_view name, std::size_t begin, std::size_t end) {
     fail_if_not_finite_word(begin, begin);
     const bool called = peek() == '(';
-    if (find_function(name)) {
+    if (is_function(name)) {
       fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name));
     }
     if (is_unit_name(name) && !called) {
@@ -47,6 +47,7 @@ class ExpressionNames : protected ExpressionOperands {
     }
     std::vector<std::string> known;
     for (const Function& function : functions) known.emplace_back(function.name);
+    known.insert(known.end(), {std::string(trapezoid_name), std::string(s_curve_name)});
     if (!called) known.emplace_back("pi");
     fail("bad-expression", begin, end,
          called ? fmt::format("unknown function '{}'", name) : fmt::format("'{}' is not a number", name),

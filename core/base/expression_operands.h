@@ -1,5 +1,5 @@
-// ExpressionOperands: the functions of formulas and what is known of values while a formula is read: their kinds and
-// dimensions, by section 1.5 of the model format.
+// ExpressionOperands: the functions of formulas and the program that is made of one, with what is known of the values
+// on its stack: their kinds and dimensions, by section 1.5 of the model format.
 #pragma once
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/expression.h"
+#include "base/expression_error.h"
 #include "base/expression_text.h"
 
 namespace freeplay {
@@ -60,6 +61,10 @@ class ExpressionOperands : protected ExpressionText {
     return found == functions.end() ? nullptr : &*found;
   }
 
+  static constexpr std::string_view trapezoid_name = "trapezoid", s_curve_name = "s_curve";
+  static bool is_speed_law(std::string_view name) { return name == trapezoid_name || name == s_curve_name; }
+  static bool is_function(std::string_view name) { return find_function(name) != nullptr || is_speed_law(name); }
+
   static Operand join(const Operand& left, const Operand& right) {
     Operand result;
     result.depends_on_time = left.depends_on_time || right.depends_on_time;
@@ -107,6 +112,65 @@ class ExpressionOperands : protected ExpressionText {
     result.dimension = {};
     return result;
   }
+
+  // --- program
+
+  Operand raise(const Operand& base, const Operand& exponent, std::size_t caret) {
+    if (exponent.dimensioned()) {
+      fail("dimension-mismatch", exponent.begin, exponent.end, "an exponent must be a number without a unit");
+    }
+    const bool plain = exponent.kind == DimensionKind::plain;
+    if (base.dimensioned() && (!plain || exponent.depends_on_time)) {
+      fail("dimension-mismatch", exponent.begin, exponent.end,
+           "the exponent of a value with a unit must consist of numbers");
+    }
+    Operand result = join(base, exponent);
+    result.kind = plain ? base.kind : DimensionKind::free;
+    if (exponent.depends_on_time) return emit(Operation::power, result, caret, caret + 1);
+    const double n = expression_.program_.back().constant;
+    if (base.dimensioned()) result.dimension = power(base.dimension, n);
+    pop();
+    return emit(Operation::power_constant, result, caret, caret + 1, n);
+  }
+
+  void push(double constant, std::size_t begin, std::size_t end) {
+    append({Operation::push_constant, constant, characters(0, begin), characters(begin, end)});
+  }
+
+  void pop() {
+    expression_.program_.pop_back();
+    --depth_;
+  }
+
+  /// Appends an operation on the values at the top of the stack, or its result when they are constant.
+  Operand emit(Operation operation, const Operand& result, std::size_t begin, std::size_t end, double constant = 0.0) {
+    const Expression::Instruction instruction{operation, constant, characters(0, begin), characters(begin, end)};
+    if (result.depends_on_time) {
+      append(instruction);
+      return result;
+    }
+    // A constant operand is always a single push, so the operands are the last instructions.
+    const int count = Expression::operand_count(operation);
+    std::array<Jet, 4> operands{};
+    for (int i = count; i-- > 0; pop()) {
+      operands[static_cast<std::size_t>(i)] = Jet::constant(expression_.program_.back().constant);
+    }
+    EvaluationFailure failure;
+    if (!expression_.apply(instruction, operands.data(), failure)) {
+      throw ExpressionError(failure.id, failure.reason, failure.offset, failure.length);
+    }
+    append({Operation::push_constant, operands[0].value, instruction.offset, instruction.length});
+    return result;
+  }
+
+  void append(const Expression::Instruction& instruction) {
+    expression_.program_.push_back(instruction);
+    depth_ += 1 - Expression::operand_count(instruction.operation);
+    expression_.stack_depth_ = std::max(expression_.stack_depth_, depth_);
+  }
+
+  int depth_ = 0;  ///< of the stack
+  Expression expression_;
 };
 
 }  // namespace freeplay

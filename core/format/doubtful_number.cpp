@@ -39,7 +39,7 @@ bool begins_word(char c) { return std::isalpha(static_cast<unsigned char>(c)) ||
 bool is_word_part(char c) { return begins_word(c) || std::isdigit(static_cast<unsigned char>(c)); }
 
 /// Functions whose result is a plain number, whatever stands in their brackets.
-constexpr std::string_view plain_functions[] = {"sin", "cos", "tan", "exp", "log", "smooth"};
+constexpr std::string_view plain_functions[] = {"sin", "cos", "tan", "exp", "log", "smooth", "trapezoid", "s_curve"};
 
 /// The place after the bracket that closes the one at `open`.
 std::size_t after_bracket(std::string_view text, std::size_t open) {
