@@ -31,6 +31,15 @@ AxisMotion<T> slide_along_x(const RelativeMotion<T>& x) {
   return {x.d.x, dot(u, x.u - cross(x.w_a, x.d)), u};
 }
 
+/// The same place as the coordinate of a joint: along x_a, or about z_a.
+inline void write_axis_coordinate(const JointInput& in, bool slides, CoordinateRow& row) {
+  if (slides) {
+    Separation(in).write_coordinate(axis(*in.a, 0), row);
+  } else {
+    AngleAboutZ(in).write(row);
+  }
+}
+
 /// The first parameter of a force along an axis: does it slide or turn?
 inline constexpr Parameter axis_kind_parameter{.name = "kind",
                                                .kind = ParameterKind::choice,
@@ -57,13 +66,7 @@ class AxisForce final : public Joint {
     layout.analytic_derivatives = 1;
     layout.coordinate = slides_ ? Coordinate::position : Coordinate::angle;
   }
-  void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    if (slides_) {
-      Separation(in).write_coordinate(axis(*in.a, 0), row);
-    } else {
-      AngleAboutZ(in).write(row);
-    }
-  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { write_axis_coordinate(in, slides_, row); }
   void apply(const JointInput& in, JointForces& out) const override {
     const PairInFirstAxes pair =
         slides_ ? PairInFirstAxes(in, Vector3d::Zero(), Eigen::Matrix3d::Zero()) : PairInFirstAxes::with_axis(in, 0);

@@ -55,13 +55,7 @@ class SlippingCoupling final : public Joint {
     layout.channels = slides_ ? Span<const Channel>(of_slide) : Span<const Channel>(of_turn);
     layout.events = {events_.data(), count_};
   }
-  void coordinate(const JointInput& in, CoordinateRow& row) const override {
-    if (slides_) {
-      Separation(in).write_coordinate(axis(*in.a, 0), row);
-    } else {
-      AngleAboutZ(in).write(row);
-    }
-  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { write_axis_coordinate(in, slides_, row); }
   void apply(const JointInput& in, JointForces& out) const override {
     const PairInFirstAxes pair = pair_of(in);
     const RelativeMotion<double> x = pair.numbers();
