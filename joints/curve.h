@@ -1,6 +1,10 @@
 // A curve of a marker that a formula gives, and what joints say of it in the model file.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include "freeplay/plugin.h"
 
 namespace freeplay::curves {
@@ -8,11 +12,13 @@ namespace freeplay::curves {
 /// A height over x of the marker, or a distance from its origin over the angle.
 enum class CurveForm { cartesian, polar };
 
-/// Value, slope and bend of a curve. The bend is the difference of exact slopes at three places on either side, to
-/// sixth order: exact for polynomials up to the seventh degree.
+/// Value, slope and bend of a curve. The bend is the difference of exact slopes at equal distances, to sixth order:
+/// exact for polynomials up to the seventh degree. Where the formula changes its form on one side, as from an arc to a
+/// line, they stand on the other.
 class Curve {
  public:
-  Curve(const Formula& formula, CurveForm form) : formula_(formula), step_(form == CurveForm::polar ? 1e-3 : 1e-4) {}
+  Curve(const Formula& formula, CurveForm form)
+      : formula_(formula), step_(form == CurveForm::polar ? 1e-3 : 1e-4), switches_(formula.switches()) {}
 
   struct At {
     double value, slope, bend;
@@ -20,17 +26,34 @@ class Curve {
   At at(double x) const {
     At out{};
     out.value = value_at(x, out.slope);
-    constexpr double weights[] = {45.0, -9.0, 1.0};
-    for (int k = 1; k <= 3; ++k) {
-      double above = 0.0, below = 0.0;
-      value_at(x + k * step_, above);
-      value_at(x - k * step_, below);
-      out.bend += weights[k - 1] * (above - below) / (60.0 * step_);
+    const double near = step_ * static_cast<double>(between.size()), far = 2.0 * near;
+    const bool back = one_form(x, x - far), ahead = one_form(x, x + far);
+    if (back == ahead || one_form(x - near, x + near)) {
+      for (std::size_t k = 0; k < between.size(); ++k) {
+        const double by = step_ * static_cast<double>(k + 1);
+        out.bend += between[k] * (slope_at(x + by) - slope_at(x - by)) / (60.0 * step_);
+      }
+      return out;
+    }
+    const double sense = ahead ? 1.0 : -1.0;
+    for (std::size_t k = 0; k < beside.size(); ++k) {
+      out.bend += sense * beside[k] * slope_at(x + sense * step_ * static_cast<double>(k)) / (60.0 * step_);
     }
     return out;
   }
 
+  /// How many numbers decide() fills: each passes zero where the formula changes its form.
+  std::int32_t switches() const { return switches_; }
+  void decide(double x, Span<double> g) const {
+    const double variables[] = {x};
+    formula_.decide(variables, g);
+  }
+
  private:
+  static constexpr std::array<double, 3> between{45.0, -9.0, 1.0};                                   // of 60
+  static constexpr std::array<double, 7> beside{-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0};  // of 60
+  static constexpr std::int32_t most_switches = 64;
+
   double value_at(double x, double& slope) const {
     const double variables[] = {x};
     double slopes[1] = {};
@@ -38,9 +61,27 @@ class Curve {
     slope = slopes[0];
     return value;
   }
+  double slope_at(double x) const {
+    double slope = 0.0;
+    value_at(x, slope);
+    return slope;
+  }
+  /// Of more switches than usual nothing is known.
+  bool one_form(double x, double y) const {
+    if (switches_ <= 0 || switches_ > most_switches) return true;
+    std::array<double, most_switches> g{}, h{};
+    const auto count = static_cast<std::size_t>(switches_);
+    decide(x, {g.data(), count});
+    decide(y, {h.data(), count});
+    for (std::size_t i = 0; i < count; ++i) {
+      if ((g[i] >= 0.0) != (h[i] >= 0.0)) return false;
+    }
+    return true;
+  }
 
   Formula formula_;
   double step_;  // of differences of slopes [rad or m]
+  std::int32_t switches_;
 };
 
 inline constexpr Parameter curve_rows[] = {
@@ -52,7 +93,7 @@ inline constexpr Parameter curve_rows[] = {
     {.name = "curve",
      .kind = ParameterKind::formula,
      .unit = "m",
-     .summary = "Height at x, or distance at the angle x from 0 to one turn; points as well.",
+     .summary = "Height at x, or distance at the angle x from 0 to one turn; points or arcs as well.",
      .variables = "x: form: m | rad"}};
 
 }  // namespace freeplay::curves

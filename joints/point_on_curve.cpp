@@ -30,6 +30,7 @@ class PointOnCurve final : public Joint {
     static constexpr Channel channels[] = {{"normal_force", "N"}};
     layout.time_scale = unbounded;
     layout.constraint_rows = 1;
+    layout.kinks = curve_.switches();
     layout.channels = channels;
   }
   void constrain(const JointInput& in, ConstraintRows& rows) const override {
@@ -42,6 +43,10 @@ class PointOnCurve final : public Joint {
       rows.jacobian[velocity_b + i] = along;
     }
     rows.jacobian[turn_a] = row.by_turn;
+  }
+  void kinks(const JointInput& in, Span<double> g) const override {
+    const Eigen::Vector2d d = position(*in.b) - position(*in.a), h = x_axis(*in.a);
+    curve_.decide(form_ == CurveForm::polar ? angle_of(d, h) : h.dot(d), g);
   }
   /// Positive: the curve pushes the point up, or away from the middle of the cam.
   void observe(const JointInput& in, Span<const double> lambda, Span<double> channels) const override {
@@ -59,6 +64,10 @@ class PointOnCurve final : public Joint {
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
     return form_ == CurveForm::polar ? around(in, d, rate) : along(in, d, rate);
   }
+  static double angle_of(const Eigen::Vector2d& d, const Eigen::Vector2d& h) {
+    const double psi = std::atan2(turned(h).dot(d), h.dot(d));
+    return psi < 0.0 ? psi + 2.0 * std::numbers::pi : psi;
+  }
   Row along(const JointInput& in, const Eigen::Vector2d& d, const Eigen::Vector2d& rate) const {
     const Eigen::Vector2d h = x_axis(*in.a), n = turned(h);
     const double w = angular_velocity(*in.a), x = h.dot(d), y = n.dot(d);
@@ -72,9 +81,7 @@ class PointOnCurve final : public Joint {
     const Eigen::Vector2d h = x_axis(*in.a);
     const double rho = std::max(d.norm(), smallest_distance);
     const Eigen::Vector2d u = d.norm() > 0.0 ? Eigen::Vector2d(d / d.norm()) : h, t = turned(u);
-    double psi = std::atan2(turned(h).dot(d), h.dot(d));
-    if (psi < 0.0) psi += 2.0 * std::numbers::pi;
-    const Curve::At f = curve_.at(psi);
+    const Curve::At f = curve_.at(angle_of(d, h));
     const double out = u.dot(rate), q = t.dot(rate) / rho, turning = q - angular_velocity(*in.a);
     return {rho - f.value, f.bend * turning * turning - rho * q * q - 2.0 * f.slope * out * q / rho, f.slope,
             u - f.slope / rho * t};
@@ -96,8 +103,8 @@ Component point_on_curve() {
        .formula =
            "y = curve(x) in the first frame, or |d| = curve(angle of d in the first frame), d = P_b - P_a; for a "
            "roller the way of its centre.",
-       .validity = "The point does not lift off: a negative normal_force pulls. Where the curvature of a formula or of "
-                   "points jumps, accelerations go over within 3e-4 m or 3e-3 rad.",
+       .validity = "The point does not lift off: a negative normal_force pulls. A step with error control ends "
+                   "where the curve changes its form, as from an arc to a line.",
        .references = "Norton 2009, Cam Design and Manufacturing Handbook",
        .parameters = curves::curve_rows});
 }

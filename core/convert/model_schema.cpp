@@ -137,6 +137,7 @@ Json leaf_schema(const Parameter& p) {
     case ParameterKind::formula:
       alternatives.push_back(reference("quantity"));
       alternatives.push_back(reference("points"));
+      if (std::string_view(p.unit) == "m") alternatives.push_back(reference("arcs"));
       break;
     case ParameterKind::vector:
       alternatives.push_back(reference("vector"));

@@ -111,6 +111,12 @@ constexpr FormatKey points[] = {
     {"interpolation", "'cubic' | 'linear'", "", "cubic", "Cubic spline, or straight lines.", "linear"},
     {"ends", "'natural' | 'periodic'", "", "natural", "Straight on beyond them, or the same again.", "periodic"}};
 
+constexpr FormatKey arcs[] = {
+    {"arcs", "list of list of quantity", "", "required",
+     "Circles [x, y, radius] joined by tangents, a negative radius clockwise; [x, y]: an end of a curve over x.",
+     "[[0 m, 0 m, 20 mm], [30 mm, 0 m, 8 mm]]"},
+    {"roller", "quantity", "m", "0", "The curve is the way of the centre of a roller of this radius.", "10 mm"}};
+
 constexpr FormatKey inverse_kinematics[] = {
     {"frame", "frame", "", "required", "What follows the path.", "platform"},
     {"path", "map path", "", "required", "At least one component.", "{x: 0.1*cos(t), y: 0.1*sin(t)}"},
@@ -380,6 +386,7 @@ constexpr FormatMap maps[] = {
     {"table", "drivers.NAME.table", "Values over time.", table},
     {"points", "forces.NAME.spring", "A formula of a type, such as of a spring, as points of its first variable.",
      points},
+    {"arcs", "joints.NAME.curve", "A curve in the plane of arcs of circles and their common tangents.", arcs},
     {"force", "forces.NAME", "A force element; its other keys depend on its type.", force},
     {"force force", "forces.NAME", "A force that acts on a point.", applied_force},
     {"force torque", "forces.NAME", "A torque that acts on a body.", applied_torque},

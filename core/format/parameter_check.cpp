@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "format/arc_keys.h"
 #include "format/parameter_tree.h"
 #include "format/table_variables.h"
 #include "model/table_formula.h"
@@ -254,7 +255,9 @@ class ParameterCheck {
     TableVariables variables;
     for (const VariableRow& row : variables_of(parameter)) variables.add(row.name, unit_in_table(row.unit).dimension);
     if (written.node().is_map()) {
-      return read_points(unit_in_table(variables_of(parameter).front().unit).dimension, unit.dimension, written, value);
+      const Dimension of_x = unit_in_table(variables_of(parameter).front().unit).dimension;
+      if (written.node().find("arcs") != nullptr) return read_arcs(written, of_x, unit.dimension, value);
+      return read_points(of_x, unit.dimension, written, value);
     }
     const std::optional<Expression> expression = written.formula(variables, unit.dimension);
     if (!expression) return false;
