@@ -63,7 +63,7 @@ std::vector<std::string> kept_libraries(const std::string& model_file) {
 
 std::string kept_model(const std::string& folder) {
   std::error_code ignored;
-  for (const char* name : {"model.urdf", "model.xml"}) {
+  for (const char* name : {"model.urdf", "model.sdf", "model.xml"}) {
     if (fs::exists(fs::path(folder) / name, ignored)) return (fs::path(folder) / name).string();
   }
   return (fs::path(folder) / "model.yaml").string();

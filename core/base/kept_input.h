@@ -22,7 +22,7 @@ std::vector<std::string> kept_libraries(const std::string& model_file);
 /// Where they stand, from the folder of the model.
 inline constexpr const char* libraries_folder = "plugins";
 
-/// The copy of the model in the result of a run: model.urdf or model.xml, else model.yaml, whether it is there or not.
+/// The copy of the model in a result: model.urdf, model.sdf or model.xml, else model.yaml, whether it is there or not.
 std::string kept_model(const std::string& folder);
 
 /// Name of the model whose copy stands in the result of a run; empty for another file.

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-const Words any_file, model_endings{".yaml", ".yml", ".urdf", ".xml"};
+const Words any_file, model_endings{".yaml", ".yml", ".urdf", ".sdf", ".xml"};
 
 /// The command that is being typed, as far as it is there.
 struct Line {

@@ -116,8 +116,9 @@ fs::path Remaking::stage(const Json& run, std::size_t number) const {
   const std::size_t first = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   const bool robot = first != std::string::npos && text[first] == '<';
   const fs::path file = folder / (!robot                                      ? "model.yaml"
-                                  : text.find("<mujoco") == std::string::npos ? "model.urdf"
-                                                                              : "model.xml");
+                                  : text.find("<mujoco") != std::string::npos ? "model.xml"
+                                  : text.find("<sdf") != std::string::npos    ? "model.sdf"
+                                                                              : "model.urdf");
   write_whole_file(file, text);
   write_whole_file(folder / "summary.json", json_text({{"provenance", {{"model", {{"name", model["name"]}}}}}}));
   write_whole_file(folder / only_copies, "");

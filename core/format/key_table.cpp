@@ -20,7 +20,7 @@ constexpr FormatKey model[] = {
     {"presets", "entries of contents", "", "", "Named keys that entries copy with `use`.", "{steel: {mass: 1 kg}}"},
     {"plugins", "list of text", "", "", "Libraries with more types: paths from the model's folder, or names.",
      "[./my_joint.so]"},
-    {"urdf", "text | map urdf", "", "", "A robot file, URDF or MJCF, that this file adds to.", "robot.urdf"},
+    {"urdf", "text | map urdf", "", "", "A robot file, URDF, MJCF or SDFormat, that this file adds to.", "robot.urdf"},
     {"bodies", "entries of map body", "", "", "What moves; `ground` may carry frames.",
      "{rod: {mass: 1, inertia: 0.1}}"},
     {"frames", "entries of frame value", "", "", "More frames; the keys are BODY/NAME.", "{rod/tip: [1, 0]}"},

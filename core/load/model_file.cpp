@@ -81,7 +81,8 @@ std::optional<Document> parse_robot(std::string text, const std::string& file_na
 bool is_urdf(const std::string& file_name) { return std::filesystem::path(file_name).extension() == ".urdf"; }
 
 bool is_robot(const std::string& file_name) {
-  return is_urdf(file_name) || std::filesystem::path(file_name).extension() == ".xml";
+  const std::filesystem::path ending = std::filesystem::path(file_name).extension();
+  return is_urdf(file_name) || ending == ".xml" || ending == ".sdf";
 }
 
 std::optional<Document> parse_model(std::string text, const std::string& file_name, Diagnostics& diagnostics) {

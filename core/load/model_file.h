@@ -21,7 +21,7 @@ std::optional<Document> parse_model(std::string text, const std::string& file_na
 
 /// Is it a URDF file, by its name?
 bool is_urdf(const std::string& file_name);
-/// Is it a robot file, by its name: `.urdf` or `.xml`? The root element says which format it has.
+/// Is it a robot file, by its name: `.urdf`, `.sdf` or `.xml`? The root element says which format it has.
 bool is_robot(const std::string& file_name);
 
 }  // namespace freeplay

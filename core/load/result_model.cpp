@@ -40,7 +40,7 @@ ResultWords use_model_of_result(std::string& path, const Json& summary, BuildOpt
   if (!fs::is_directory(folder, ignored)) return {};
   const std::string file = kept_model(path);
   if (!summary.is_object() || !summary.contains("settings")) no_result(path, "summary.json of a run");
-  if (!fs::exists(file, ignored)) no_result(path, "model.yaml, model.urdf or model.xml");
+  if (!fs::exists(file, ignored)) no_result(path, "model.yaml, model.urdf, model.sdf or model.xml");
   path = file;
   const Json& settings = summary["settings"];
   use_settings(settings, build);

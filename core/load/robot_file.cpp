@@ -3,19 +3,30 @@
 #include <string_view>
 
 #include "mjcf/document.h"
+#include "sdf/document.h"
 
 namespace freeplay {
+namespace {
+
+std::optional<urdf::Sections> urdf_sections(XmlDocument& xml, const std::string* file_name,
+                                            const urdf::Options& options, Document& document,
+                                            Diagnostics& diagnostics) {
+  return urdf::add_sections(xml, file_name, options, document, diagnostics);  // one of several of that name
+}
+
+}  // namespace
 
 std::optional<urdf::Sections> add_robot_sections(const std::string& text, const std::string* file_name,
                                                  const urdf::Options& options, Document& document,
                                                  Diagnostics& diagnostics) {
   // Of a file that is not well-formed the first tag that is there says what it was to be.
-  const char* id = text.find("<mujoco") == std::string::npos ? "bad-urdf" : "bad-mjcf";
+  const auto holds = [&](const char* tag) { return text.find(tag) != std::string::npos; };
+  const char* id = holds("<mujoco") ? "bad-mjcf" : holds("<sdf") ? "bad-sdf" : "bad-urdf";
   const auto xml = parse_xml(text, *file_name, id, diagnostics);
   if (!xml) return std::nullopt;
-  const bool is_mjcf = std::string_view(xml->root().Name()) == "mujoco";
-  return is_mjcf ? mjcf::add_sections(*xml, file_name, options, document, diagnostics)
-                 : urdf::add_sections(*xml, file_name, options, document, diagnostics);
+  const std::string_view root = xml->root().Name();
+  const auto read = root == "mujoco" ? mjcf::add_sections : root == "sdf" ? sdf::add_sections : urdf_sections;
+  return read(*xml, file_name, options, document, diagnostics);
 }
 
 }  // namespace freeplay

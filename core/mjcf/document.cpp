@@ -9,10 +9,7 @@
 #include "mjcf/equality.h"
 #include "mjcf/inertia.h"
 #include "mjcf/world.h"
-#include "urdf/mimic.h"
-#include "urdf/plane.h"
 #include "urdf/robot_sections.h"
-#include "urdf/tree.h"
 
 namespace freeplay::mjcf {
 namespace {
@@ -47,16 +44,6 @@ void note_sections(XmlElement& root, Messages& messages) {
   if (!text_of(root).empty()) messages.error(urdf::text_spot(root), "bad-urdf", "unexpected text in mujoco");
 }
 
-const Node& gravity_node(const Settings& settings, const std::optional<urdf::Options::Plane>& plane,
-                         urdf::Nodes& nodes) {
-  std::vector<double> values{settings.gravity[0], settings.gravity[1], settings.gravity[2]};
-  if (plane) {
-    const Eigen::Vector3d seen = urdf::plane_axes(*plane) * settings.gravity;
-    values = {seen[0] + 0.0, seen[1] + 0.0};
-  }
-  return nodes.numbers(values, settings.gravity_spot);
-}
-
 std::optional<urdf::Sections> read_sections(XmlElement& root, const urdf::Options& options, urdf::Nodes& nodes,
                                             Messages& messages) {
   note_sections(root, messages);
@@ -66,15 +53,9 @@ std::optional<urdf::Sections> read_sections(XmlElement& root, const urdf::Option
   read_equalities(root, world, settings, defaults, messages);
   scale_masses(settings, world.robot);
   world.robot.places_known = !messages.failed();
-  resolve_mimics(world.robot, messages);
-  build_tree(world.robot, options, messages);
-  for (const urdf::Joint& joint : world.robot.joints) {
-    if (joint.limits && !options.stops) messages.ignore("limits of joint", joint.name);
-  }
-  urdf::Names names(world.robot, messages);
-  auto sections = robot_sections(world.robot, names, options, nodes, messages);
-  if (sections) sections->gravity = &gravity_node(settings, sections->plane, nodes);
-  return sections;
+  world.robot.gravity = settings.gravity;
+  world.robot.gravity_spot = settings.gravity_spot;
+  return finish_robot(world.robot, options, nodes, messages);
 }
 
 }  // namespace

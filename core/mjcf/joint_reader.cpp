@@ -11,10 +11,6 @@
 namespace freeplay::mjcf {
 namespace {
 
-/// A slide without a range: a spring or damper acts along the line to a point of the slide's axis that is a bit further
-/// away than this [m].
-constexpr double endless_reach = 999.0;
-
 class OwnJointReader {
  public:
   OwnJointReader(XmlElement& xml, const Settings& settings, Messages& messages)
@@ -81,7 +77,7 @@ class OwnJointReader {
           fmt::format("the coordinate of {} counts from the pose of the file, not from 'ref'", element_.owner()));
     }
     const bool counts = limited == 1 || (limited == 2 && settings_.auto_limits && !range.empty());
-    if (out_.kind == Kind::slide) out_.joint.reach = endless_reach;
+    if (out_.kind == Kind::slide) out_.joint.reach = urdf::endless_reach;
     if (!counts || out_.kind == Kind::free) return;
     if (range.empty() || (has_coordinate() && range[0] >= range[1])) {
       messages_.error(spot_of(xml_, range.empty() ? "limited" : "range"), "bad-urdf",

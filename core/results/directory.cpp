@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* own_files[] = {"results.csv", "results.h5",  "summary.json", "events.csv", "inputs.csv",
-                                     "model.yaml",  "model.urdf",  "model.xml",    "inputs",     "checkpoint.bin",
-                                     "run.log",     "report.html", "twin"};
+constexpr const char* own_files[] = {"results.csv",    "results.h5", "summary.json", "events.csv", "inputs.csv",
+                                     "model.yaml",     "model.urdf", "model.sdf",    "model.xml",  "inputs",
+                                     "checkpoint.bin", "run.log",    "report.html",  "twin"};
 
 [[noreturn]] void fail(std::string message, std::string hint = {}) {
   throw Error(Error::Category::file, "cannot-write", std::move(message), {}, std::move(hint));
@@ -102,7 +102,7 @@ std::span<const char* const> result_names() { return own_files; }
 
 std::string model_copy_name(const Model& model) {
   const fs::path suffix = fs::path(model.file).extension();
-  return suffix == ".urdf" || suffix == ".xml" ? "model" + suffix.string() : "model.yaml";
+  return suffix == ".urdf" || suffix == ".sdf" || suffix == ".xml" ? "model" + suffix.string() : "model.yaml";
 }
 
 void check_result_directory(const fs::path& path, bool force) {

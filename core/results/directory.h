@@ -20,7 +20,7 @@ std::string result_name(std::string_view model_name, bool ideal);
 /// Names of the files and folders that a result is made of, whatever its format.
 std::span<const char* const> result_names();
 
-/// Name of the copy of the model's file in a result: model.yaml, model.urdf or model.xml.
+/// Name of the copy of the model's file in a result: model.yaml, model.urdf, model.sdf or model.xml.
 std::string model_copy_name(const Model& model);
 
 /// Throws Error{file} unless a result may go to `path`: it does not exist, is empty, holds an earlier result (a

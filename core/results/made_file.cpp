@@ -63,8 +63,8 @@ MadeKind kind_of(const fs::path& path) {
 
 /// The result that a file of one stands for.
 std::optional<fs::path> directory_of(const fs::path& file) {
-  constexpr const char* names[] = {"results.csv", "events.csv", "summary.json",
-                                   "model.yaml",  "model.urdf", "model.xml"};
+  constexpr const char* names[] = {"results.csv", "events.csv", "summary.json", "model.yaml",
+                                   "model.urdf",  "model.sdf",  "model.xml"};
   std::error_code ignored;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (std::ranges::find(names, file.filename().string()) == std::end(names)) return std::nullopt;

@@ -1,29 +1,12 @@
 #include "urdf/loops.h"
 
-#include <algorithm>
-#include <numbers>
-
 #include <fmt/format.h>
 
-#include "urdf/blanks.h"
 #include "urdf/reference.h"
+#include "urdf/text_value.h"
 
 namespace freeplay::urdf {
 namespace {
-
-std::string trimmed(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(blanks);
-  if (begin == std::string::npos) return {};
-  return text.substr(begin, text.find_last_not_of(blanks) - begin + 1);
-}
-
-Spot whole_text_spot(const XmlElement& xml) {
-  const std::string text = trimmed(text_of(xml));
-  if (text.empty()) return name_spot(xml);
-  Spot spot = text_spot(xml);
-  spot.length = static_cast<int>(text.size());
-  return spot;
-}
 
 class LoopReader {
  public:
@@ -175,7 +158,7 @@ class LoopReader {
       return end;
     }
     end.spot = end.frame_spot = whole_text_spot(*xml);
-    const std::string name = trimmed(text_of(*xml));
+    const std::string name = trimmed_text(*xml);
     // In SDF `world` is there without being declared.
     end.link = name == "world" && !links_.knows(name) ? world_link : links_.find(name, end.spot, messages_);
     return end;
@@ -184,16 +167,11 @@ class LoopReader {
   void read_sdf_pose(const XmlElement& xml, End& child) {
     for (const XmlAttribute* attribute = xml.FirstAttribute(); attribute != nullptr; attribute = attribute->Next()) {
       const std::string_view name = attribute->Name(), value = attribute->Value();
-      if (value.empty() || name == "degrees" || (name == "rotation_format" && value == "euler_rpy")) continue;
+      if (value.empty() || name == "degrees" || name == "rotation_format") continue;
       messages_.error(spot_of(xml, *attribute), "bad-urdf",
                       fmt::format("the attribute '{}' of a pose is not read: a pose is relative to the child", name));
     }
-    const auto numbers = read_numbers(xml, 6);
-    if (!numbers) return;
-    const bool in_degrees = xml.Attribute("degrees", "true") != nullptr || xml.Attribute("degrees", "1") != nullptr;
-    const double unit = in_degrees ? std::numbers::pi / 180.0 : 1.0;
-    child.frame.translation() << (*numbers)[0], (*numbers)[1], (*numbers)[2];
-    child.frame.linear() = rotation(unit * Eigen::Vector3d((*numbers)[3], (*numbers)[4], (*numbers)[5]));
+    child.frame = text_pose(xml, messages_);
   }
 
   void read_sdf_axis(XmlElement& xml, Joint& joint) {
@@ -211,32 +189,12 @@ class LoopReader {
       messages_.error(spot_of(*xyz, *expressed), "bad-urdf",
                       fmt::format("the axis of '{}' may be expressed in __model__ only", joint.name));
     }
-    const std::string word = frame == nullptr ? std::string() : trimmed(text_of(*frame));
+    const std::string word = frame == nullptr ? std::string() : trimmed_text(*frame);
     joint.axis_in_world = word == "1" || word == "true" || axes == "__model__";
-    const auto numbers = read_numbers(*xyz, 3);
-    if (!numbers) return;
-    joint.axis = unit_axis({(*numbers)[0], (*numbers)[1], (*numbers)[2]}, joint.axis_spot,
+    const std::vector<double> numbers = text_numbers(*xyz, 3, messages_);
+    if (numbers.empty()) return;
+    joint.axis = unit_axis({numbers[0], numbers[1], numbers[2]}, joint.axis_spot,
                            fmt::format("the axis of '{}'", joint.name), messages_);
-  }
-
-  std::optional<std::vector<double>> read_numbers(const XmlElement& xml, std::size_t count) {
-    std::vector<double> numbers;
-    const std::string text = text_of(xml);
-    for (std::size_t begin = text.find_first_not_of(blanks); begin != std::string::npos;) {
-      const std::size_t end = std::min(text.find_first_of(blanks, begin), text.size());
-      std::string why, hint;
-      const auto number = read_number(std::string_view(text).substr(begin, end - begin), why, hint);
-      if (!number) {
-        messages_.error(whole_text_spot(xml), "bad-urdf", fmt::format("'{}': {}", xml.Name(), why), {}, hint);
-        return std::nullopt;
-      }
-      numbers.push_back(*number);
-      begin = text.find_first_not_of(blanks, end);
-    }
-    if (numbers.size() == count) return numbers;
-    messages_.error(whole_text_spot(xml), "bad-urdf",
-                    fmt::format("'{}' must be {} numbers, not {}", xml.Name(), count, numbers.size()));
-    return std::nullopt;
   }
 
   Robot& robot_;

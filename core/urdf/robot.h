@@ -53,8 +53,8 @@ struct End {
 };
 
 /// URDF has the first five. Frames of a universal joint have the axis of the parent as x and that of the child as y,
-/// those of a cylindrical one its axis as z.
-enum class JointType { revolute, prismatic, fixed, floating, planar, spherical, universal, cylindrical };
+/// those of a cylindrical one and of a screw its axis as z.
+enum class JointType { revolute, prismatic, fixed, floating, planar, spherical, universal, cylindrical, screw };
 
 struct Mimic {
   std::string joint;  ///< the leading one
@@ -67,7 +67,12 @@ struct Limits {
   double lower = 0.0, upper = 0.0;  ///< [rad or m]
   double effort = 0.0;              ///< the largest that drives the joint [N m or N]
   Spot spot;
+  double stiffness = 0.0;  ///< of the stops [N m/rad or N/m]; 0: the file says none
 };
+
+/// A slide without limits: a spring or damper acts along the line to a point of the slide's axis that is a bit further
+/// away than this [m].
+inline constexpr double endless_reach = 999.0;
 
 /// A joint of the tree or one that closes a loop. Both frames coincide at coordinate zero, but for what the joint
 /// frees.
@@ -87,6 +92,7 @@ struct Joint {
   double stiffness = 0.0;  ///< of a spring [N m/rad or N/m]
   double slack_at = 0.0;   ///< coordinate at which it is slack [rad or m]
   Spot stiffness_spot;
+  double lead = 0.0;  ///< of a screw [m]
   std::optional<Limits> limits;
   double reach = 0.0;  ///< of a slide: the larger limit [m]
   std::optional<Mimic> mimic;
@@ -100,7 +106,8 @@ struct Joint {
   bool turns() const { return type == JointType::revolute; }
   /// Has it freedoms that only a spatial model knows?
   bool is_spatial() const {
-    return type == JointType::spherical || type == JointType::universal || type == JointType::cylindrical;
+    return type == JointType::spherical || type == JointType::universal || type == JointType::cylindrical ||
+           type == JointType::screw;
   }
   bool has_coordinate() const { return type == JointType::revolute || type == JointType::prismatic; }
   bool has_axis() const { return has_coordinate() || type == JointType::planar; }
@@ -117,7 +124,9 @@ struct Robot {
   std::vector<Link> links;
   std::vector<Joint> joints;  ///< in file order, those of the tree first
   bool places_known = true;   ///< false after a message about the place, type or axis of a joint: a guess stands there
-  bool ambiguous = false;     ///< a link was named twice, or a joint names none: the tree is not determined
+  std::optional<Eigen::Vector3d> gravity;  ///< empty: the file says none [m/s^2]
+  Spot gravity_spot;
+  bool ambiguous = false;  ///< a link was named twice, or a joint names none: the tree is not determined
 
   // Filled by build_tree().
   int root = no_link;

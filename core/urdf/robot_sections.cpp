@@ -7,14 +7,16 @@
 
 #include "base/index.h"
 #include "urdf/inertia.h"
+#include "urdf/mimic.h"
 #include "urdf/sections.h"
+#include "urdf/tree.h"
 
 namespace freeplay::urdf {
 namespace {
 
 const char* type_word(JointType type) {
-  constexpr const char* words[] = {"revolute", "prismatic", "fixed",     "floating",
-                                   "planar",   "spherical", "universal", "cylindrical"};
+  constexpr const char* words[] = {"revolute",  "prismatic", "fixed",       "floating", "planar",
+                                   "spherical", "universal", "cylindrical", "screw"};
   return words[static_cast<int>(type)];
 }
 
@@ -73,14 +75,24 @@ void report_spatial_joints(const Robot& robot, Messages& messages) {
   }
 }
 
+/// In a plane only what lies in it is left; null where the file says no gravity.
+const Node* gravity_node(const Robot& robot, const std::optional<Options::Plane>& plane, Nodes& nodes) {
+  if (!robot.gravity) return nullptr;
+  const Eigen::Vector3d& g = *robot.gravity;
+  if (!plane) return &nodes.numbers({g[0], g[1], g[2]}, robot.gravity_spot);
+  const Eigen::Vector3d seen = plane_axes(*plane) * g;
+  return &nodes.numbers({seen[0] + 0.0, seen[1] + 0.0}, robot.gravity_spot);
+}
+
 std::optional<Sections> write_spatial(Robot& robot, Names& names, const Options& options, Nodes& nodes,
                                       Messages& messages) {
   check_inertia(robot, options, false, {}, messages);
   if (messages.failed()) return std::nullopt;
   report_default_axes(robot, messages);
   const auto view = spatial_view(robot, nodes);
-  const Sections sections = write_sections(robot, *view, {}, names, options, nodes, messages);
+  Sections sections = write_sections(robot, *view, {}, names, options, nodes, messages);
   if (messages.failed()) return std::nullopt;
+  sections.gravity = gravity_node(robot, {}, nodes);
   return sections;
 }
 
@@ -106,9 +118,20 @@ std::optional<Sections> robot_sections(Robot& robot, Names& names, const Options
   report_default_axes(robot, messages);
   report_snapping(robot, planar, messages);
   const auto view = planar_view(robot, planar, nodes);
-  const Sections sections = write_sections(robot, *view, planar.plane, names, options, nodes, messages);
+  Sections sections = write_sections(robot, *view, planar.plane, names, options, nodes, messages);
   if (messages.failed()) return std::nullopt;
+  sections.gravity = gravity_node(robot, planar.plane, nodes);
   return sections;
+}
+
+std::optional<Sections> finish_robot(Robot& robot, const Options& options, Nodes& nodes, Messages& messages) {
+  resolve_mimics(robot, messages);
+  build_tree(robot, options, messages);
+  for (const Joint& joint : robot.joints) {
+    if (joint.limits && !options.stops) messages.ignore("limits of joint", joint.name);
+  }
+  Names names(robot, messages);
+  return robot_sections(robot, names, options, nodes, messages);
 }
 
 }  // namespace freeplay::urdf

@@ -14,4 +14,7 @@ namespace freeplay::urdf {
 std::optional<Sections> robot_sections(Robot& robot, Names& names, const Options& options, Nodes& nodes,
                                        Messages& messages);
 
+/// All of it: followers, tree, names, sections. `robot` has its links and joints.
+std::optional<Sections> finish_robot(Robot& robot, const Options& options, Nodes& nodes, Messages& messages);
+
 }  // namespace freeplay::urdf

@@ -125,6 +125,9 @@ class Writer {
     nodes_.put(entry, "type", nodes_.scalar(type_word(joint.type), joint.type_spot), joint.type_spot);
     nodes_.put(entry, "between", ends(joint, name, name), joint.spot);
     if (const Node* axis = view_.axis(number)) nodes_.put(entry, "axis", *axis, joint.axis_spot);
+    if (joint.type == JointType::screw) {
+      nodes_.put(entry, "lead", nodes_.number(joint.lead, joint.axis_spot), joint.axis_spot);
+    }
     nodes_.put(*joint_section_, name, entry, joint.spot);
     if ((joint.damping > 0.0 || joint.stiffness > 0.0) && joint.has_coordinate()) write_spring_damper(number);
     if (joint.friction > 0.0 && joint.has_coordinate()) write_friction(number);
@@ -145,6 +148,8 @@ class Writer {
         return "universal";
       case JointType::cylindrical:
         return "cylindrical";
+      case JointType::screw:
+        return "screw";
       default:
         return "fixed";
     }
@@ -184,7 +189,7 @@ class Writer {
     nodes_.put(entry, "friction", nodes_.number(joint.friction, joint.friction_spot), joint.friction_spot);
   }
 
-  /// URDF knows no stiffness: under the largest effort of the joint its stops give way by 1 mm or 0.01 rad.
+  /// Where the file says no stiffness, the stops give way by 1 mm or 0.01 rad under the largest effort of the joint.
   void write_stop(int index) {
     const Joint& joint = robot_.joints[at(index)];
     const Limits& limits = *joint.limits;
@@ -194,7 +199,8 @@ class Writer {
     Node& entry = axis_force(index, "joint-stop", "-stop", spot);
     nodes_.put(entry, "lower", nodes_.number(turned ? -limits.upper + 0.0 : limits.lower, spot), spot);
     nodes_.put(entry, "upper", nodes_.number(turned ? -limits.lower + 0.0 : limits.upper, spot), spot);
-    nodes_.put(entry, "stiffness", nodes_.number(effort / give, spot), spot);
+    const double stiffness = limits.stiffness > 0.0 ? limits.stiffness : effort / give;
+    nodes_.put(entry, "stiffness", nodes_.number(stiffness, spot), spot);
   }
 
   /// An entry of `forces` that acts on the coordinate of a joint.

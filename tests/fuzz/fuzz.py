@@ -21,6 +21,7 @@ TARGETS = {
     "expression": {"short": 40000, "longest": 10500},
     "mjcf": {"short": 3000, "longest": 16384},
     "model": {"short": 6000, "longest": 16384},
+    "sdf": {"short": 3000, "longest": 16384},
     "table": {"short": 8000, "longest": 4096},
     "unit": {"short": 30000, "longest": 256},
     "urdf": {"short": 3000, "longest": 16384},
@@ -32,9 +33,10 @@ EXPRESSIONS = ["2*pi/3", "1 mm + 2 in", "${a}*sin(2*pi*t/1 s)", "smooth(t, 0 s, 
                "exp(-t) / log(2)"]
 TABLES = ["time,value\n0,0\n0.5,1\n1,0\n", "# s, rad\n t , x \n0,+1e-3\n\n1,2\n2,1e-3\n", "t,a,b\n0,1,2\n1,2,3,4\n2,\n"]
 
-# The pages of documentation have the only MJCF files of the project.
-MJCF = re.compile(rb"```xml\n(<mujoco.*?)```", re.DOTALL)
-MJCF_PARTS = """<mujoco><compiler angle="radian" inertiafromgeom="auto" settotalmass="3"/>
+# The pages of documentation have the only files of the project in these formats.
+IN_PAGES = {"mjcf": re.compile(rb"```xml\n(<mujoco.*?)```", re.DOTALL), "sdf": re.compile(rb"```xml\n(<sdf.*?)```", re.DOTALL)}
+PARTS = {}
+PARTS["mjcf"] = """<mujoco><compiler angle="radian" inertiafromgeom="auto" settotalmass="3"/>
 <default><geom density="2700"/><default class="arm"><joint damping="1"/><geom type="box"/></default></default>
 <worldbody><body name="a" childclass="arm" pos="0 0 1" euler="0 0.1 0.2"><freejoint/>
 <geom size="0.1 0.2 0.3"/><geom type="ellipsoid" size="0.1 0.2 0.3" mass="1" axisangle="0 1 0 0.3"/>
@@ -42,6 +44,20 @@ MJCF_PARTS = """<mujoco><compiler angle="radian" inertiafromgeom="auto" settotal
 <geom type="cylinder" fromto="0 0 0 0 0 1" size="0.05"/><frame pos="0 1 0"><site name="s" zaxis="1 0 0"/></frame></body>
 <body name="c"><joint type="ball"/><inertial pos="0 0 1" mass="2" fullinertia="2 2 2 0.1 0 0"/></body></body></worldbody>
 <equality><weld body1="a" body2="c"/><connect site1="s" site2="s"/><joint joint1="q" polycoef="0 1 0 0 0"/></equality></mujoco>
+"""
+PARTS["sdf"] = """<sdf version="1.11"><world name="w"><gravity>0 0 -1</gravity><model name="m" canonical_link="a" placement_frame="f">
+<pose degrees="true">1 0 0 0 0 90</pose><link name="a"><pose relative_to="f">0 1 0 0 0 0</pose><inertial><mass>1</mass><inertia>
+<ixx>1</ixx><iyy>1</iyy><izz>1</izz><ixy>0.1</ixy></inertia></inertial></link><link name="b"/><link name="c"/>
+<frame name="f"><pose rotation_format="quat_xyzw">0 0 1 0 0 0 1</pose></frame><frame name="g" attached_to="n::l"/>
+<model name="n"><static>1</static><link name="l"/></model>
+<joint name="j" type="revolute"><parent>world</parent><child>a</child><axis><xyz expressed_in="f">0 1 0</xyz>
+<limit><lower>-1</lower><upper>inf</upper></limit><dynamics><damping>1</damping><spring_stiffness>2</spring_stiffness></dynamics></axis></joint>
+<joint name="k" type="prismatic"><parent>g</parent><child>b</child><axis><xyz>1 0 0</xyz><mimic joint="j"><multiplier>2</multiplier></mimic></axis></joint>
+<joint name="s" type="screw"><parent>b</parent><child>a</child><axis><xyz>0 0 1</xyz></axis><screw_thread_pitch>0.1</screw_thread_pitch></joint>
+<joint name="u" type="universal"><parent>c</parent><child>b</child><axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2></joint>
+<joint name="r" type="revolute"><parent>a</parent><child>c</child><axis><xyz>0 1 0</xyz></axis></joint>
+<joint name="x" type="gearbox"><parent>world</parent><child>c</child><gearbox_ratio>2</gearbox_ratio>
+<gearbox_reference_body>a</gearbox_reference_body></joint></model></world></sdf>
 """
 
 
@@ -70,9 +86,10 @@ def seeds(target):
     texts = [read(path) for path in files(ENDING[target])] if target in ENDING else []
     if target == "table":
         texts += [text.encode() for text in TABLES]
-    if target == "mjcf":
-        texts = [text for path in glob.glob(os.path.join(ROOT, "docs", "*.md")) for text in MJCF.findall(read(path))]
-        texts.append(MJCF_PARTS.encode())
+    if target in PARTS:
+        pages = glob.glob(os.path.join(ROOT, "docs", "*.md"))
+        texts = [text for path in pages for text in IN_PAGES[target].findall(read(path))]
+        texts.append(PARTS[target].encode())
     if target == "expression":
         texts = [text.encode() for text in EXPRESSIONS]
         for path in files("yaml"):

@@ -44,15 +44,15 @@ class Completion(ProgramTest):
         self.assertEqual(["flores"], self.complete("describe", "flo"))
 
     def test_models_and_folders(self):
-        for name in ("a.yaml", "a.yml", "a.urdf", "a.csv", ".a.yaml"):
+        for name in ("a.yaml", "a.yml", "a.urdf", "a.sdf", "a.csv", ".a.yaml"):
             self.write(name, "")
         os.mkdir(self.path("all"))
         self.write("all/b.yaml", "")
-        self.assertEqual(["a.urdf", "a.yaml", "a.yml", "all/"], self.complete("run", ""))
+        self.assertEqual(["a.sdf", "a.urdf", "a.yaml", "a.yml", "all/"], self.complete("run", ""))
         self.assertEqual(["all/b.yaml"], self.complete("validate", "a.yaml", "all/"))
         self.assertEqual([], self.complete("run", "a.yaml", ""))  # takes one model
         self.assertIn("a.csv", self.complete("compare", "a."))
-        self.assertEqual(["~/a.urdf", "~/a.yaml", "~/a.yml"],
+        self.assertEqual(["~/a.sdf", "~/a.urdf", "~/a.yaml", "~/a.yml"],
                          self.freeplay("complete", "run", "~/a.", environment={"HOME": self.folder})[0].splitlines())
 
     def test_names_of_the_model_on_the_line(self):

@@ -188,6 +188,13 @@ class Documentation(ProgramTest):
         self.write("four-bar-loose.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
         self.run_page(page)
 
+    def test_sdf(self):
+        page = os.path.join("docs", "sdf.md")
+        text = self.read_file(page)
+        self.write("four-bar.sdf", re.search(r"^```xml\n(.*?)^```", text, re.M | re.S)[1])
+        self.write("four-bar-loose.yaml", re.search(r"^```yaml\n(.*?)^```", text, re.M | re.S)[1])
+        self.run_page(page)
+
     def test_text_is_read_as_the_model_page_says(self):
         with open(os.path.join(ROOT, "docs", "model-file.md"), encoding="utf-8") as file:
             rows = re.findall(r"^\| `(.*)` \| (?:`([a-z-]+)`|([\d.]+)) \|$", file.read(), re.M)

@@ -19,6 +19,7 @@ STANDS_ON = {
     "yaml": ["format"],
     "urdf": ["format"],
     "mjcf": ["urdf"],
+    "sdf": ["urdf"],
     "convert": ["yaml"],
     "linear": ["base"],
     "system": ["model", "linear"],
@@ -30,7 +31,7 @@ STANDS_ON = {
     "plot": ["results", "svg"],
     "analysis": ["assembly"],
     "drawing": ["analysis", "svg"],
-    "load": ["yaml", "mjcf", "run"],
+    "load": ["yaml", "mjcf", "sdf", "run"],
     "report": ["results", "load"],
     "workers": ["base"],
     "job": ["results", "load", "workers"],
@@ -248,7 +249,7 @@ class Names(unittest.TestCase):
         self.assertTrue(self.names)
         found = []
         for path in sources("core"):
-            if path.startswith(("core/urdf/", "core/mjcf/")):  # formats with joint types of their own
+            if path.startswith(("core/urdf/", "core/mjcf/", "core/sdf/")):  # formats with joint types of their own
                 continue
             # How the base of a robot is held is a word of the format, not a joint.
             text = re.sub(r'\{"base", .*?\}', "", read(path).lower(), flags=re.S)

@@ -67,7 +67,7 @@ class Model:
     def _same_text(self) -> dict[str, Any]:
         """Where the model is from, whatever its file and the present folder have become."""
         place = {**self._place, "file": os.path.join(self._home, self._place["file"]), "shown": self._shown}
-        return place if self.file.endswith(".urdf") else {**place, "text": self._known["text"]}
+        return place if self.file.endswith((".urdf", ".sdf", ".xml")) else {**place, "text": self._known["text"]}
 
     def _here(self) -> Model:
         """The model for work that reads its tables again: where the present folder is another now, with a path from the root."""
@@ -207,7 +207,7 @@ def load(source: Source, *, set: Mapping[str, Quantity] | None = None, ideal: st
          strict: bool = False, folder: str | os.PathLike[str] | None = None, allow_plugins: bool = False) -> Model:
     """Reads and checks a model.
 
-    source: a path (.yaml, .yml, .urdf), a YAML text with a line feed, or the YAML tree as a mapping.
+    source: a path (.yaml, .yml, .urdf, .sdf, .xml), a YAML text with a line feed, or the YAML tree as a mapping.
     set: values by parameter or path, numbers in SI or texts such as "0.2 mm". ideal: joints whose clearance is closed, a name, pattern or "all".
     end: end time [s]. step: step [s]. accuracy: of positions instead of a step [m per s]. integrator: its name.
     plugins: libraries to load besides. strict: warnings are errors. folder: where paths of a text or mapping count from (the present one).
@@ -355,7 +355,7 @@ def progress_of(progress: Progress, end: Sequence[float]) -> Callable[[float, in
 def model_of_result(directory: str, summary: Mapping[str, Any]) -> Model | None:
     """The model that stands in a result, as it ran; None where it has none that can be read."""
     settings = summary.get("settings") or {}
-    for name in ("model.yaml", "model.urdf", "model.xml"):
+    for name in ("model.yaml", "model.urdf", "model.sdf", "model.xml"):
         path = os.path.join(directory, name)
         if not os.path.exists(path):
             continue
