@@ -9,6 +9,7 @@
 
 #include "component/joint_roles.h"
 #include "drawing/given_start.h"
+#include "drawing/joint_outline.h"
 #include "drawing/joint_shapes.h"
 #include "drawing/joint_stops.h"
 #include "drawing/pitch_radii.h"
@@ -22,6 +23,7 @@ constexpr double width = 900.0, most_height = 1400.0, least_height = 260.0, marg
 constexpr double inset_width = 262.0, inset_height = 274.0;
 constexpr double rim = 12.0, least_rim = 8.0;  // radii of gears
 constexpr double most_pitch = 3.0;             // radius of a wheel, of the rest of the mechanism
+constexpr double curve_reach = 0.15;           // of a curve to both sides, of the width
 
 using svg::length;
 using svg::Point;
@@ -122,13 +124,17 @@ class Drawing {
     for (const Trace& trace : picture_.traces) {
       for (const auto& p : trace.points) all.push_back({p[0], p[1]});
     }
+    for (const JointElement& joint : model_.joints) {
+      if (const auto curve = curve_of(joint); curve && !curve->polar) continue;  // its piece goes by the scale
+      for (const std::vector<Point>& line : outlines(joint)) all.insert(all.end(), line.begin(), line.end());
+    }
     auto [low, high] = ends_of(all);
     largest_pitch_ = most_pitch * std::max(high.x - low.x, high.y - low.y);
     for (const JointElement& joint : model_.joints) {
       if (joint.gear < 0) continue;
       const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
       const Point from = world_place(gear.first), to = world_place(gear.second);
-      const PitchRadii radii = pitch_radii(length(to - from), gear.ratio);
+      const PitchRadii radii = pitch_radii(length(to - from), ratio_of_wheels(model_, gear));
       if (!has_pitch_circles(gear, radii)) continue;
       for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {
         all.push_back({at.x - radius, at.y - radius});
@@ -144,6 +150,21 @@ class Drawing {
     // A mechanism on one vertical or horizontal line still gets a picture of ordinary proportions.
     scale_ = std::min(scale_, (width - 2 * margin) / largest);
     height_ = std::max(least_height, scale_ * size.y + 2 * margin);
+  }
+
+  /// Where a belt or a curve goes [m]; one that is not closed as far as a part of the picture.
+  std::vector<std::vector<Point>> outlines(const JointElement& joint) const {
+    const Point a = world(marker(joint.marker_a)), b = world(marker(joint.marker_b));
+    if (const auto belt = belt_of(joint)) return {belt_line(*belt, a, b)};
+    const auto curve = curve_of(joint);
+    if (!curve) return {};
+    return curve_lines(*curve, a, angle_of(marker(joint.marker_a)), b, curve_reach * width / scale_);
+  }
+  void draw_outlines(const JointElement& joint, const char* kind) {
+    for (std::vector<Point>& line : outlines(joint)) {
+      for (Point& p : line) p = page(p);
+      draw_outline(out_, line, kind);
+    }
   }
 
   /// Lower left and upper right.
@@ -302,12 +323,18 @@ class Drawing {
       if (const auto stops = stops_of(joint)) {
         const double turn = angle_of(a);
         draw_stops(out_, *stops, from, {std::cos(turn), -std::sin(turn)}, {-std::sin(turn), -std::cos(turn)}, scale_);
+      } else if (belt_of(joint)) {
+        draw_outlines(joint, "belt");
       } else if (joint.layout.outlines.empty()) {
         out_.spring(from, to);
       }
       out_.label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
     } else if (slides) {
       draw_slide(from, to, angle_of(a), angle_of(b), a.body == ground);
+      out_.label(joint.name, to, "");
+    } else if (curve_of(joint)) {
+      draw_outlines(joint, "curve");
+      draw_pin(joint, to);
       out_.label(joint.name, to, "");
     } else if (apart && joint.ideal_layout.constraint_rows == 1) {
       out_.line(from, to, "stroke=\"black\" stroke-width=\"2\" stroke-dasharray=\"6 3\"");
@@ -323,7 +350,7 @@ class Drawing {
     const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
     const Point first = world_place(gear.first), second = world_place(gear.second), from = page(first),
                 to = page(second);
-    PitchRadii radii = pitch_radii(length(second - first), gear.ratio);
+    PitchRadii radii = pitch_radii(length(second - first), ratio_of_wheels(model_, gear));
     const bool drawn = has_pitch_circles(gear, radii) && scale_ * std::min(radii.first, radii.second) > least_rim;
     radii = drawn ? PitchRadii{scale_ * radii.first, scale_ * radii.second} : PitchRadii{rim, rim};
     for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {

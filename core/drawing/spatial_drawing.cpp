@@ -334,7 +334,7 @@ class Drawing {
     const JointFreedom &first = scene_.freedom(gear.first), &second = scene_.freedom(gear.second);
     const double apart = (scene_.place(gear.second) - scene_.place(gear.first)).norm();
     const bool parallel = first.turns == 1 && second.turns == 1 && first.turn.cross(second.turn).norm() < 1e-6;
-    const PitchRadii radii = pitch_radii(view_->scale() * apart, gear.ratio);
+    const PitchRadii radii = pitch_radii(view_->scale() * apart, ratio_of_wheels(model_, gear));
     const bool seen =
         parallel && std::min(radii.first, radii.second) > least_rim && std::max(radii.first, radii.second) < most_rim;
     const std::pair<Point, const JointFreedom*> wheels[] = {{from, &first}, {to, &second}};

@@ -273,12 +273,14 @@ simulation: {end: 1, accuracy: 1 um, stop: [{channel: body.a.x, above: 1 mm}], o
 bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}
 joints:
   A: {type: revolute, between: [ground, a]}
-  B: {type: revolute, between: [ground/far, b]}
+  B: {type: revolute, between: [%s]}
   mesh: {type: gear, of: [A, B], ratio: %s}
 frames: {ground/far: [1, 0]}
 """
-        for ratio, first in ((-2, 2 / 3), (-0.25, 0.2), (2, 2), (0.6, 1.5)):
-            out, _ = self.freeplay("show", self.write("m.yaml", model % ratio), "--format", "svg")
+        plain, turned = "ground/far, b", "b, ground/far"  # where the wheel is the first body, its angle counts the other way
+        for ratio, first, between in ((-2, 2 / 3, plain), (-0.25, 0.2, plain), (2, 2, plain), (0.6, 1.5, plain),
+                                      (2, 2 / 3, turned), (-2, 2, turned)):
+            out, _ = self.freeplay("show", self.write("m.yaml", model % (between, ratio)), "--format", "svg")
             a, b = self.kind(xml.fromstring(out), "circle", "pitch")
             apart = float(b.get("cx")) - float(a.get("cx"))
             self.assertAlmostEqual(first, float(a.get("r")) / apart, delta=1e-3)
@@ -287,6 +289,47 @@ frames: {ground/far: [1, 0]}
             for wheel in (a, b):
                 x, y, r = (float(wheel.get(name)) for name in ("cx", "cy", "r"))
                 self.assertTrue(r <= x <= width - r and r <= y <= height - r, (ratio, x, y, r, width, height))
+
+    def test_belts_are_drawn_with_their_wraps_and_tangents(self):
+        model = """freeplay: 1
+bodies: {a: {mass: 1, inertia: 1}, b: {mass: 1, inertia: 1}}
+joints:
+  A: {type: revolute, between: [ground, a]}
+  B: {type: revolute, between: [ground/far, b]}
+frames: {ground/far: [300 mm, 0]}
+forces:
+  run: {type: belt, between: [a, b], first_radius: 50 mm, second_radius: 100 mm, stiffness: 1e5, pretension: 1, strands: %s}
+"""
+        for strands, sense in (("open", 1), ("crossed", -1)):
+            out, _ = self.freeplay("show", self.write("m.yaml", model % strands), "--format", "svg")
+            line, = map(self.points, self.kind(xml.fromstring(out), "path", "belt"))
+            # All of it lies between circles and tangents: its length is that of the textbook.
+            scale = (max(x for x, y in line) - min(x for x, y in line)) / 0.45
+            length = sum(math.dist(p, q) for p, q in zip(line, line[1:])) / scale
+            angle = math.asin((0.1 - sense * 0.05) / 0.3)
+            wraps = 0.1 * (math.pi + 2 * angle) + 0.05 * (math.pi - 2 * sense * angle)
+            self.assertAlmostEqual(wraps + 2 * 0.3 * math.cos(angle), length, delta=2e-3)
+            self.assertAlmostEqual(0.2, (max(y for x, y in line) - min(y for x, y in line)) / scale, delta=1e-3)
+
+    def test_cams_and_grooves_are_drawn_to_scale(self):
+        model = """freeplay: 1
+bodies: {cam: {mass: 1, inertia: 1}, roller: {mass: 1, inertia: 1, pose: {position: [0, 40 mm]}}}
+joints:
+  A: {type: revolute, between: [ground, cam]}
+  G: {type: prismatic, between: [ground/up, roller/up]}
+  C: {type: point-on-curve, between: [cam, roller], %s}
+frames: {ground/up: {angle: 90 deg}, roller/up: {angle: 90 deg}}
+"""
+        out, _ = self.freeplay("show", self.write("m.yaml", model % "form: polar, curve: {arcs: [[10 mm, 0, 30 mm]]}"),
+                               "--format", "svg")
+        line, = map(self.points, self.kind(xml.fromstring(out), "path", "curve"))
+        xs, ys = zip(*line)
+        middle, radius = ((max(xs) + min(xs)) / 2, (max(ys) + min(ys)) / 2), (max(xs) - min(xs)) / 2
+        for point in line:
+            self.assertAlmostEqual(1.0, math.dist(point, middle) / radius, delta=5e-3)
+        out, _ = self.freeplay("show", self.write("m.yaml", model % 'curve: "40 mm + 0.5*x"'), "--format", "svg")
+        (x0, y0), *_, (x1, y1) = self.points(self.kind(xml.fromstring(out), "path", "curve")[0])
+        self.assertAlmostEqual(0.5, (y0 - y1) / (x1 - x0), delta=5e-3)
 
     def test_stops_are_bars_at_the_ends_of_a_way(self):
         model = """freeplay: 1
