@@ -100,6 +100,12 @@ void choose_elbow(const Model& model, const PlatformOverrides& overrides, Platfo
 
 }  // namespace
 
+Components Platform::path_components() const {
+  Components given{};
+  for (std::size_t i = 0; i < given.size(); ++i) given[i] = path.gives(i);
+  return given;
+}
+
 Platform platform_of(const Model& model, const PlatformOverrides& overrides) {
   Platform platform;
   const InverseKinematics* entry = only_entry(model);

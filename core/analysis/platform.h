@@ -18,11 +18,11 @@ struct Platform {
   std::vector<int> inputs;  ///< joints
   std::vector<int> elbow;   ///< 1 or -1, by input
   bool elbow_given = false;
-  std::array<std::optional<Expression>, 3> path;  ///< x, y, angle; all empty: none is known
-  Location location;                              ///< of what names the frame
+  FramePath path;     ///< gives nothing where none is known
+  Location location;  ///< of what names the frame
 
-  bool has_path() const { return path[0] || path[1] || path[2]; }
-  Components path_components() const { return {path[0].has_value(), path[1].has_value(), path[2].has_value()}; }
+  bool has_path() const { return path.gives_any(); }
+  Components path_components() const;
 };
 
 /// What the command line puts in place of the section.

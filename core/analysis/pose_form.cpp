@@ -1,19 +1,16 @@
 #include "analysis/pose_form.h"
 
+#include "model/path_pose.h"
+
 namespace freeplay {
 namespace {
 
-constexpr const char* planar_words[] = {"x", "y", "angle"};
 constexpr const char* planar_changes[] = {"dx", "dy", "dangle"};
 constexpr const char* planar_forces[] = {"fx", "fy"};
 constexpr int planar_twist[] = {0, 1, 5};
-constexpr const char* spatial_words[] = {"x", "y", "z", "roll", "pitch", "yaw"};
 constexpr const char* spatial_changes[] = {"dx", "dy", "dz", "drx", "dry", "drz"};
 constexpr const char* spatial_forces[] = {"fx", "fy", "fz", "tx", "ty", "tz"};
 constexpr int spatial_twist[] = {0, 1, 2, 3, 4, 5};
-
-constexpr PoseForm planar_form{planar_words, planar_changes, planar_twist, planar_forces, 2};
-constexpr PoseForm spatial_form{spatial_words, spatial_changes, spatial_twist, spatial_forces, 3};
 
 }  // namespace
 
@@ -31,6 +28,10 @@ std::string enumeration(std::span<const char* const> words) {
   return out;
 }
 
-const PoseForm& pose_form(Space space) { return space == Space::spatial ? spatial_form : planar_form; }
+const PoseForm& pose_form(Space space) {
+  static const PoseForm planar{path_words(Space::planar), planar_changes, planar_twist, planar_forces, 2};
+  static const PoseForm spatial{path_words(Space::spatial), spatial_changes, spatial_twist, spatial_forces, 3};
+  return space == Space::spatial ? spatial : planar;
+}
 
 }  // namespace freeplay

@@ -148,7 +148,7 @@ void RequestedStations::on_path(const GridValues& times) {
         components_to_give(form(), freedoms_, given_, "the path", section().path_location.value_or(platform.location));
     if (needed != given_) {
       throw Error(Error::Category::input, "ik-underdetermined",
-                  "the path gives no angle, but the mechanism leaves its frame 3 freedoms",
+                  fmt::format("the path gives no angle, but the mechanism leaves its frame {} freedoms", freedoms_),
                   section().path_location.value_or(platform.location));
     }
   } else {

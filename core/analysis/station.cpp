@@ -27,12 +27,13 @@ Demand path_demand(IdealMechanism& mechanism, double t) {
     return demand;
   }
   demand.given = platform.path_components();
-  for (std::size_t i = 0; i < 3; ++i) {
-    EvaluationFailure failure;
-    if (!platform.path[i] || platform.path[i]->evaluate(t, demand.pose[i], failure)) continue;
+  EvaluationFailure failure;
+  PathPose pose;
+  if (!platform.path.evaluate(t, pose, failure)) {
     throw Error(Error::Category::numerical, failure.id,
                 fmt::format("the path has no value at t = {} s: {}", t, failure.reason), platform.location);
   }
+  demand.pose = pose.numbers;
   return demand;
 }
 

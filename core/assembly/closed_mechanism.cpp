@@ -55,13 +55,13 @@ void ClosedMechanism::evaluate(unsigned terms) {
   if (!system.evaluate(point(state), terms | term_coordinate, e)) throw_fault(model(), e.fault);
 }
 
-double ClosedMechanism::path_value(const PathRow& path) const {
+PathPose ClosedMechanism::path_pose(const PathRow& path) const {
   PathPose pose;
   MotionFault fault;
   if (!system.motions().path(path.kinematics, state.t(), pose, fault)) {
     throw_motion_fault(model(), fault, Error::Category::input);
   }
-  return pose[at(path.component)].value;
+  return pose;
 }
 
 ClosedMechanism::Rows ClosedMechanism::position_rows() {
@@ -124,10 +124,11 @@ void ClosedMechanism::keep_turns() {
 
 void ClosedMechanism::add_path(Rows& rows, Eigen::Index i, std::vector<SparseEntry>& entries) {
   const PathRow& path = paths[at(rows.path[static_cast<std::size_t>(i)])];
-  double row[3];
-  path.entries(e, row);
-  for (int c = 0; c < 3 && path.body != ground; ++c) entries.emplace_back(i, 3 * path.body + c, row[c]);
-  rows.residual[i] = path.residual(system, point(state), e, path_value(path));
+  double row[6];
+  path.entries(system, e, row);
+  const int width = system.layout().body_velocities();
+  for (int c = 0; c < width && path.body != ground; ++c) entries.emplace_back(i, width * path.body + c, row[c]);
+  rows.residual[i] = path.residual(system, point(state), e, path_pose(path));
 }
 
 void ClosedMechanism::add_lead(Rows& rows, Eigen::Index i, double value, bool speeds,

@@ -70,7 +70,7 @@ class ClosedMechanism {
   bool holds(const Rows& rows) const { return rows.largest() <= model().settings.assembly_tolerance; }
 
   const Model& model() const { return system.model(); }
-  double path_value(const PathRow& path) const;
+  PathPose path_pose(const PathRow& path) const;
 
  private:
   Rows assemble(Rows rows, const std::vector<Lead>& leading, bool speeds);

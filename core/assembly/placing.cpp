@@ -26,6 +26,12 @@ struct PlanarPose {
     if (is_angle) angle = nearest_turn(angle, coordinate);
     return {relative.position[0], relative.position[1], angle};
   }
+  static constexpr std::size_t lengths = 2;
+  // Turned as the body's guess is where the path leaves that open.
+  static PlanarPose on_path(const FramePath& given, const PathPose& path, const Body& body, const Marker& frame) {
+    const double angle = given.gives(2) ? path[2].value : body.angle.value_or(0.0) + frame.angle;
+    return {path[0].value, path[1].value, angle};
+  }
   // Turned as the body's own guess says, if it does, for a frame that stands at `end`.
   static void turn_as_given(const Body& body, const Marker& far, PlanarPose& end) {
     if (body.angle) end.angle = *body.angle + far.angle;
@@ -58,6 +64,12 @@ struct SpatialPose {
   static SpatialPose of(const Pose& relative, bool, double) {
     return {spatial::vector(relative.position), Eigen::Map<const RowMajor>(relative.rotation)};
   }
+  static constexpr std::size_t lengths = 3;
+  static SpatialPose on_path(const FramePath& given, const PathPose& path, const Body& body, const Marker& frame) {
+    const spatial::Vector position(path[0].value, path[1].value, path[2].value);
+    if (given.gives_turning()) return {position, Eigen::Map<const RowMajor>(path.turning.rotation.data())};
+    return {position, guess(body).rotation * of(frame).rotation};
+  }
   static void turn_as_given(const Body& body, const Marker& far, SpatialPose& end) {
     if (body.rotation) end.rotation = guess(body).rotation * of(far).rotation;
   }
@@ -79,7 +91,7 @@ class Walk {
         placed_(model_.bodies.size(), 0) {}
 
   void run() {
-    if constexpr (std::is_same_v<Frame, PlanarPose>) place_paths();
+    place_paths();
     for (std::size_t b = 0; b < frames_.size(); ++b) {
       const Body& body = model_.bodies[b];
       if (!placed_[b] && body.position) put(static_cast<int>(b), Frame::guess(body));
@@ -112,12 +124,13 @@ class Walk {
         throw_motion_fault(model_, fault, Error::Category::input);
       }
       const BodyId body = marker(entry.marker).body;
-      if (body != ground && entry.path[0] && entry.path[1]) {
-        const double guess = model_.bodies[at(body)].angle.value_or(0.0) + marker(entry.marker).angle;
-        const double angle = entry.path[2] ? path[2].value : guess;
-        put(body, PlanarPose{path[0].value, path[1].value, angle} * inverse(mount(entry.marker)));
+      if (body != ground && entry.path.gives_all(Frame::lengths)) {
+        put(body, Frame::on_path(entry.path, path, model_.bodies[at(body)], marker(entry.marker)) *
+                      inverse(mount(entry.marker)));
       }
-      for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) place_leg(d);
+      if constexpr (std::is_same_v<Frame, PlanarPose>) {
+        for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d) place_leg(d);
+      }
     }
   }
 

@@ -39,9 +39,10 @@ void check_paths(const System& closed, const Evaluation& e) {
     const std::vector<PathRow> paths = path_rows(model, static_cast<int>(&entry - model.kinematics.data()));
     const int given = static_cast<int>(paths.size());
     for (int i = 0; i < given && body != ground; ++i) {
-      double row[3];
-      paths[at(i)].entries(e, row);
-      for (int c = 0; c < 3; ++c) entries.emplace_back(nc + i, 3 * body + c, row[c]);
+      double row[6];
+      paths[at(i)].entries(closed, e, row);
+      const int width = closed.layout().body_velocities();
+      for (int c = 0; c < width; ++c) entries.emplace_back(nc + i, width * body + c, row[c]);
     }
     const SparseMatrix with = sparse_matrix(nc + given, nv, entries);
     const int free = numerical_rank(without), prescribed = numerical_rank(with);

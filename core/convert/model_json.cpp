@@ -17,6 +17,7 @@
 #include "base/unit.h"
 #include "format/parameter_tree.h"
 #include "model/gear_teeth.h"
+#include "model/path_pose.h"
 
 namespace freeplay {
 namespace {
@@ -244,28 +245,34 @@ class ModelWriter {
 
   /// Points are in SI; a file stays what it is, with the units of its columns.
   Json table(const Driver& one) const {
+    const TableSource& source = one.table_source;
+    if (!source.file.empty()) return file(source, effort_unit(one));
+    const char* unit = effort_unit(one);
+    Json json = {{"points", Json::array()}};
+    for (std::size_t i = 0; i < one.table->times().size(); ++i) {
+      json["points"].push_back({number(one.table->times()[i], "s"), number(one.table->values()[i], unit)});
+    }
+    json.update(smoothing(source));
+    return json;
+  }
+
+  static Json file(const TableSource& source, const char* unit) {
+    Json json = {{"file", source.file}};
+    if (!source.time.empty()) json["time"] = source.time;
+    if (!source.value.empty()) json["value"] = source.value;
+    json["time_unit"] = source.time_unit.empty() ? "s" : source.time_unit;
+    json["unit"] = source.unit.empty() ? unit : source.unit;
+    json.update(smoothing(source));
+    return json;
+  }
+
+  static Json smoothing(const TableSource& source) {
     constexpr const char* interpolations[] = {"cubic", "linear"};
     constexpr const char* ends[] = {"natural", "clamped", "periodic"};
     constexpr const char* outside[] = {"hold", "repeat", "error"};
-    const TableSource& source = one.table_source;
-    Json json = Json::object();
-    if (source.file.empty()) {
-      const char* unit = effort_unit(one);
-      json["points"] = Json::array();
-      for (std::size_t i = 0; i < one.table->times().size(); ++i) {
-        json["points"].push_back({number(one.table->times()[i], "s"), number(one.table->values()[i], unit)});
-      }
-    } else {
-      json["file"] = source.file;
-      if (!source.time.empty()) json["time"] = source.time;
-      if (!source.value.empty()) json["value"] = source.value;
-      json["time_unit"] = source.time_unit.empty() ? "s" : source.time_unit;
-      json["unit"] = source.unit.empty() ? effort_unit(one) : source.unit;
-    }
-    json["interpolation"] = interpolations[static_cast<int>(source.interpolation)];
-    json["ends"] = ends[static_cast<int>(source.ends)];
-    json["outside"] = outside[static_cast<int>(source.outside)];
-    return json;
+    return {{"interpolation", interpolations[static_cast<int>(source.interpolation)]},
+            {"ends", ends[static_cast<int>(source.ends)]},
+            {"outside", outside[static_cast<int>(source.outside)]}};
   }
 
   const char* effort_unit(const Driver& one) const {
@@ -275,10 +282,14 @@ class ModelWriter {
   }
 
   Json path(const InverseKinematics& one) const {
-    constexpr const char* keys[] = {"x", "y", "angle"};
+    const std::span<const char* const> keys = path_words(model_.space);
     Json path = Json::object();
-    for (std::size_t i = 0; i < std::size(keys); ++i) {
-      if (one.path[i]) path[keys[i]] = one.path_text[i];
+    if (!one.path.source.file.empty()) {
+      path = file(one.path.source, "m");
+      if (!in_space()) path["angle_unit"] = one.path.angle_unit.empty() ? "rad" : one.path.angle_unit;
+    }
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      if (one.path.functions[i]) path[keys[i]] = one.path.text[i];
     }
     return {{"frame", marker(one.marker)}, {"path", path}};
   }

@@ -52,6 +52,7 @@ class Move {
     return copy_entries(root, [&](const std::string& key, const Node& value) -> Node& {
       if (key == "plugins") return copy_plugins(value);
       if (key == "drivers" || key == "presets") return copy_drivers(value);
+      if (key == "analysis") return copy_path_of(value);
       if (key == "templates") {
         return copy_entries(value, [&](const std::string&, const Node& content) -> Node& {
           return copy_entries(content, [&](const std::string& section, const Node& entries) -> Node& {
@@ -67,12 +68,22 @@ class Move {
   Node& copy_drivers(const Node& section) {
     return copy_entries(section, [&](const std::string&, const Node& driver) -> Node& {
       return copy_entries(driver, [&](const std::string& key, const Node& table) -> Node& {
-        if (key != "table") return copy(table);
-        if (table.is_scalar()) return moved(table);
-        return copy_entries(table, [&](const std::string& inner, const Node& value) -> Node& {
-          return inner == "file" && value.is_scalar() ? moved(value) : copy(value);
-        });
+        if (key == "inverse_kinematics") return copy_path_of(table);
+        return key == "table" ? copy_table(table) : copy(table);
       });
+    });
+  }
+
+  Node& copy_path_of(const Node& map) {
+    return copy_entries(map, [&](const std::string& key, const Node& value) -> Node& {
+      return key == "path" ? copy_table(value) : copy(value);
+    });
+  }
+
+  Node& copy_table(const Node& table) {
+    if (table.is_scalar()) return moved(table);
+    return copy_entries(table, [&](const std::string& key, const Node& value) -> Node& {
+      return key == "file" && value.is_scalar() ? moved(value) : copy(value);
     });
   }
 

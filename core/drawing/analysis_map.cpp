@@ -50,13 +50,13 @@ std::string analysis_map_svg(const IdealMechanism& mechanism, const AnalysisRequ
   }
   map.determinant =
       determinants(mechanism, all, stations.given(), request.threads, tick_of("signs of the map", all.size()));
-  const auto& path = mechanism.platform().path;
-  for (int k = 0; k <= 200 && path[0] && path[1]; ++k) {
+  const FramePath& path = mechanism.platform().path;
+  for (int k = 0; k <= 200 && path.gives_all(2); ++k) {
     const Settings& settings = model.settings;
-    Jet x, y;
+    PathPose pose;
     EvaluationFailure failure;
     const double t = settings.start + (settings.end - settings.start) * k / 200.0;
-    if (path[0]->evaluate(t, x, failure) && path[1]->evaluate(t, y, failure)) map.path.push_back({x.value, y.value});
+    if (path.evaluate(t, pose, failure)) map.path.push_back({pose[0].value, pose[1].value});
   }
   return map_svg(map);
 }

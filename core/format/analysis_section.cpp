@@ -64,7 +64,7 @@ void read_analysis(Draft& draft, const CheckedValue& section) {
   const auto frame = map.find("frame"), joints = map.find("joints"), time = map.find("time"), error = map.find("error");
   auto elbow = map.find("elbow"), path = map.find("path"), grid = map.find("grid");
   std::optional<std::size_t> count;
-  for (const auto& [value, what] : {std::pair{&path, "paths"}, {&grid, "grids"}, {&elbow, "working modes"}}) {
+  for (const auto& [value, what] : {std::pair{&grid, "grids"}, {&elbow, "working modes"}}) {
     if (!*value || !(*value)->in_space()) continue;
     (*value)->fail_at_key("type-space", std::string(what) + " work in planar models only");
     value->reset();
@@ -84,7 +84,7 @@ void read_analysis(Draft& draft, const CheckedValue& section) {
     analysis.elbow = read_elbow(*elbow, count).value_or(std::vector<int>{});
   }
   if (path) {
-    const auto components = read_path(*path);
+    const auto components = read_path(draft, *path);
     analysis.path_location = path->location();
     if (components) analysis.path = *components;
   }

@@ -66,9 +66,7 @@ class DriverEntry {
       if (!map_.has("joint")) {
         for (const char* key : {"value", "table", "input"}) map_.conflict("inverse_kinematics", key);
       }
-      const auto kinematics = map_.find("inverse_kinematics");
-      if (kinematics->in_space()) return kinematics->fail_at_key("type-space", "paths work in planar models only");
-      read_kinematics(*kinematics);
+      read_kinematics(*map_.find("inverse_kinematics"));
     } else {
       map_.refuse("inverse_kinematics", "");
       read_driver();
@@ -207,11 +205,16 @@ class DriverEntry {
     const auto frame = map.require("frame");
     const auto path = map.require("path");
     const auto joints = map.require("joints");
-    const auto elbow = map.find("elbow");
+    auto elbow = map.find("elbow");
     map.finish();
+    if (elbow && elbow->in_space()) {
+      elbow->fail_at_key("type-space", "working modes work in planar models only", {},
+                         "a 'pose' of the bodies chooses the branch");
+      elbow.reset();
+    }
     InverseKinematics kinematics;
     const std::optional<int> marker = frame ? draft_.marker(*frame, part_) : std::nullopt;
-    const auto components = path ? read_path(*path) : std::nullopt;
+    const auto components = path ? read_path(draft_, *path) : std::nullopt;
     const auto driven = joints ? draft_.joint_list(*joints, part_) : std::nullopt;
     const std::size_t count = driven ? driven->size() : 0;
     const auto modes = elbow && driven ? read_elbow(*elbow, count) : std::vector<int>(count, 1);
@@ -223,10 +226,6 @@ class DriverEntry {
     kinematics.path_location = path->location();
     kinematics.marker = *marker;
     kinematics.path = *components;
-    constexpr std::array<const char*, 3> keys{"x", "y", "angle"};
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      if (const Node* text = path->node().find(keys[i])) kinematics.path_text[i] = text->text;
-    }
     kinematics.first_driver = static_cast<int>(draft_.model.drivers.size());
     kinematics.driver_count = static_cast<int>(count);
     for (std::size_t i = 0; i < count; ++i) expand((*driven)[i], (*modes)[i], elbow.has_value(), joints->location());

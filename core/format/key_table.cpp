@@ -119,7 +119,8 @@ constexpr FormatKey arcs[] = {
 
 constexpr FormatKey inverse_kinematics[] = {
     {"frame", "frame", "", "required", "What follows the path.", "platform"},
-    {"path", "map path", "", "required", "At least one component.", "{x: 0.1*cos(t), y: 0.1*sin(t)}"},
+    {"path", "text | map path", "", "required", "At least one component, or a file of poses.",
+     "{x: 0.1*cos(t), y: 0.1*sin(t)}"},
     {"joints", "name | list of name", "", "required", "The joints that are driven; patterns with * are allowed.",
      "leg*.A"},
     {"elbow", "integer | list of integer", "", "1", "Working mode of each leg, 1 or -1.", "[1, -1, 1]"}};
@@ -127,7 +128,25 @@ constexpr FormatKey inverse_kinematics[] = {
 constexpr FormatKey path[] = {
     {"x", "time function", "m", "follows from the mechanism", "Global position of the frame.", "0.1*cos(t)"},
     {"y", "time function", "m", "follows from the mechanism", "Global position of the frame.", "0.1*sin(t)"},
-    {"angle", "time function", "rad", "follows from the mechanism", "Angle of the frame.", "0"}};
+    {"z", "time function", "m", "follows from the mechanism", "Global position of the frame, in space.", "0.3"},
+    {"angle", "time function", "rad", "follows from the mechanism", "Angle of the frame, in the plane.", "0"},
+    {"roll", "time function", "rad", "follows from the mechanism", "In space: turn about the fixed x axis, first.",
+     "0"},
+    {"pitch", "time function", "rad", "follows from the mechanism", "In space: turn about the fixed y axis, then.",
+     "0"},
+    {"yaw", "time function", "rad", "follows from the mechanism", "In space: turn about the fixed z axis, last.",
+     "10 deg*sin(t)"},
+    {"file", "text", "", "", "Instead: CSV file with the columns time, x, y, angle or time, x, y, z, qw, qx, qy, qz.",
+     "poses.csv"},
+    {"time", "text", "", "first column", "Column of times, with `file`.", "t"},
+    {"time_unit", "text", "", "s", "Unit of the times.", "ms"},
+    {"unit", "text", "", "m", "Unit of x, y and z.", "mm"},
+    {"angle_unit", "text", "", "rad", "Unit of the angle.", "deg"},
+    {"interpolation", "'cubic' | 'linear'", "", "cubic", "Spline with continuous second derivative, or lines.",
+     "linear"},
+    {"ends", "'natural' | 'clamped' | 'periodic'", "", "natural",
+     "Second derivative zero, first derivative zero, or periodic.", "clamped"},
+    {"outside", "'hold' | 'repeat' | 'error'", "", "hold", "Before the first and after the last time.", "repeat"}};
 
 constexpr FormatKey table[] = {
     {"file", "text", "", "", "CSV file: comma, point, # comments, a header row of names.", "motor.csv"},
@@ -236,7 +255,8 @@ constexpr FormatKey analysis[] = {
     {"frame", "frame", "", "that of the inverse kinematics", "The platform.", "platform"},
     {"joints", "name | list of name", "", "those of the inverse kinematics", "The inputs.", "leg*.A"},
     {"elbow", "integer | list of integer", "", "that of the inverse kinematics", "Working modes.", "1"},
-    {"path", "map path", "", "that of the inverse kinematics", "Path of the frame.", "{x: 0.1*t, y: 0, angle: 0}"},
+    {"path", "text | map path", "", "that of the inverse kinematics", "Path of the frame.",
+     "{x: 0.1*t, y: 0, angle: 0}"},
     {"time", "grid", "s", "the run, 101 points", "Instants on the path.", "{linspace: [0, 1, 101]}"},
     {"grid", "map pose_grid", "", "", "Poses.", "{x: {linspace: [0, 0.1, 11]}, y: 0}"},
     {"error", "map error", "", "", "Play that is looked at.", "{input: 0.1 deg}"}};
@@ -382,7 +402,7 @@ constexpr FormatMap maps[] = {
     {"gear", "joints.NAME", "A gear, or a rack and pinion: it ties two joints.", gear},
     {"driver", "drivers.NAME", "What moves one joint, or several along a path.", driver},
     {"inverse_kinematics", "drivers.NAME.inverse_kinematics", "A path that a frame follows.", inverse_kinematics},
-    {"path", "drivers.NAME.inverse_kinematics.path", "Functions of time.", path},
+    {"path", "drivers.NAME.inverse_kinematics.path", "Functions of time, or a file of poses.", path},
     {"table", "drivers.NAME.table", "Values over time.", table},
     {"points", "forces.NAME.spring", "A formula of a type, such as of a spring, as points of its first variable.",
      points},

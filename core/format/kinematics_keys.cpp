@@ -1,5 +1,11 @@
 #include "format/kinematics_keys.h"
 
+#include <span>
+#include <string>
+
+#include "format/pose_table.h"
+#include "model/path_pose.h"
+
 namespace freeplay {
 namespace {
 
@@ -10,26 +16,54 @@ std::optional<int> read_mode(const CheckedValue& value) {
   return std::nullopt;
 }
 
+/// "'x', 'y' and 'angle'"
+std::string any_of_words(std::span<const char* const> words) {
+  std::string out;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    out += std::string(i == 0 ? "" : i + 1 == words.size() ? " and " : ", ") + "'" + words[i] + "'";
+  }
+  return out;
+}
+
 }  // namespace
 
-std::optional<std::array<std::optional<Expression>, 3>> read_path(const CheckedValue& value) {
-  MapReader map(value, "path");
-  std::array<std::optional<Expression>, 3> path;
-  constexpr std::array<const char*, 3> keys{"x", "y", "angle"};
-  bool good = map.good(), any = false;
+std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value) {
+  if (!value.node().is_scalar() && !value.node().is_map()) {
+    value.wrong_type("the path of a file or a map");
+    return std::nullopt;
+  }
+  MapReader map = value.node().is_scalar() ? MapReader::empty(value) : MapReader(value, "path");
+  FramePath path;
+  const bool in_space = value.in_space();
+  const std::span<const char* const> keys = path_words(in_space ? Space::spatial : Space::planar);
+  if (value.node().is_scalar() || map.has("file")) {
+    for (const char* key : keys) {
+      map.find(key);
+      map.conflict("file", key);
+    }
+    return read_pose_table(draft, value, map);
+  }
+  for (const char* key : {"time", "time_unit", "unit", "angle_unit", "interpolation", "ends", "outside"}) {
+    map.refuse(key, "only with 'file'");
+  }
+  bool good = map.good();
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const auto component = map.find(keys[i]);
     if (!component) continue;
-    any = true;
-    path[i] = component->time_function(i < 2 ? dimension::length : dimension::angle);
-    good = good && path[i].has_value();
+    path.functions[i] = component->time_function(i < (in_space ? 3U : 2U) ? dimension::length : dimension::angle);
+    path.text[i] = component->node().text;
+    good = good && path.functions[i].has_value();
   }
-  for (const char* spatial : {"z", "roll", "pitch", "yaw"}) map.refuse(spatial, "only in spatial models");
+  if (in_space) {
+    map.refuse("angle", "in space 'roll', 'pitch' and 'yaw'");
+  } else {
+    for (const char* spatial : {"z", "roll", "pitch", "yaw"}) map.refuse(spatial, "only in spatial models");
+  }
   map.finish();
-  if (map.good() && !any) {
-    value.fail_at_key("missing-key", "'" + value.path() + "' needs at least one of 'x', 'y' and 'angle'");
+  if (good && !path.gives_any()) {
+    value.fail_at_key("missing-key", "'" + value.path() + "' needs at least one of " + any_of_words(keys));
   }
-  if (!good || !any) return std::nullopt;
+  if (!good || !path.gives_any()) return std::nullopt;
   return path;
 }
 

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "format/draft.h"
 
@@ -11,5 +14,10 @@ namespace freeplay {
 /// becomes an input of the model. Null after an error. `source`, where it is wanted, becomes what is written.
 std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& value, const Dimension& dimension,
                                             TableSource* source = nullptr);
+
+/// What numbers in this unit are multiplied by to be SI: 1 without one.
+std::optional<double> unit_factor(const std::optional<CheckedValue>& unit, const Dimension& wanted);
+/// Place in the list of words: 0 without one.
+std::optional<int> word_place(const std::optional<CheckedValue>& value, const std::vector<std::string>& words);
 
 }  // namespace freeplay

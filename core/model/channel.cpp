@@ -241,7 +241,11 @@ void Channels::add_drivers(const Model& model) {
     if (&driver != &model.drivers[static_cast<std::size_t>(entry.first_driver + entry.driver_count - 1)]) continue;
     if (paths.size() <= index) paths.resize(index + 1);
     const std::string path = "driver." + entry.name;
-    paths[index] = {add(path + ".ex", "m"), add(path + ".ey", "m"), add(path + ".eangle", "rad")};
+    PathColumns& errors = paths[index];
+    errors.error_x = add(path + ".ex", "m");
+    errors.error_y = add(path + ".ey", "m");
+    if (!planar_) errors.error_z = add(path + ".ez", "m");
+    errors.error_angle = add(path + ".eangle", "rad");
   }
 }
 

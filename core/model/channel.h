@@ -31,7 +31,7 @@ struct DriverColumns {
 };
 /// Pose of an inverse-kinematics frame minus its path.
 struct PathColumns {
-  int error_x = -1, error_y = -1, error_angle = -1;
+  int error_x = -1, error_y = -1, error_z = -1, error_angle = -1;  ///< z in space, where the angle is not negative
 };
 struct ForceColumns {
   int force = -1;  ///< as of joints

@@ -37,6 +37,7 @@ Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y};
 }  // namespace
 
 std::optional<LegChain> find_leg_chain(const Model& model, int driven, int frame) {
+  if (model.space == Space::spatial) return std::nullopt;
   const auto body_of = [&](int m) { return model.markers[static_cast<std::size_t>(m)].body; };
   const auto is_pin = [&](int j) { return model.joints[static_cast<std::size_t>(j)].ideal_layout.pin != 0; };
 
@@ -87,9 +88,7 @@ std::optional<Leg> closed_form_leg(const Model& model, int driver) {
   const Driver& driven = model.drivers[static_cast<std::size_t>(driver)];
   if (driven.kinematics < 0) return std::nullopt;
   const InverseKinematics& entry = model.kinematics[static_cast<std::size_t>(driven.kinematics)];
-  for (const auto& component : entry.path) {
-    if (!component) return std::nullopt;
-  }
+  if (!entry.path.gives_all(3)) return std::nullopt;
   std::optional<Leg> leg = find_leg(model, driven.joint, entry.marker);
   if (leg) leg->elbow = driven.elbow;
   return leg;

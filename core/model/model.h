@@ -11,6 +11,7 @@
 #include "base/error.h"
 #include "base/expression.h"
 #include "component/instances.h"
+#include "model/frame_path.h"
 #include "model/grid_values.h"
 #include "model/motion_formula.h"
 #include "model/time_table.h"
@@ -88,16 +89,6 @@ struct Gear {
 enum class DriverKind { angle, position, velocity, torque, force };
 inline bool prescribes(DriverKind kind) { return kind != DriverKind::torque && kind != DriverKind::force; }
 
-/// What a table was read from, as written.
-struct TableSource {
-  std::string file;             ///< path; empty: points in the model file
-  std::string time, value;      ///< names of columns; empty: the first and the second
-  std::string time_unit, unit;  ///< of the columns; empty: SI
-  Interpolation interpolation = Interpolation::cubic;
-  SplineEnds ends = SplineEnds::natural;
-  Outside outside = Outside::hold;
-};
-
 /// One driven joint.
 struct Driver {
   std::string name;
@@ -121,8 +112,7 @@ struct InverseKinematics {
   std::string name;
   Location location, frame_location, path_location;
   int marker = 0;
-  std::array<std::optional<Expression>, 3> path;  ///< x, y [m], angle [rad]; left out: follows from the mechanism
-  std::array<std::string, 3> path_text;           ///< of each expression, as written
+  FramePath path;
   int first_driver = 0, driver_count = 0;
 };
 
@@ -213,7 +203,7 @@ struct AnalysisSection {
   int marker = 0;                                 ///< the platform, if frame_location is given
   std::vector<int> joints;                        ///< the inputs, if joints_location is given
   std::vector<int> elbow;                         ///< one for all inputs, or one each, if elbow_location is given
-  std::array<std::optional<Expression>, 3> path;  ///< x, y [m], angle [rad], if path_location is given
+  FramePath path;                                 ///< if path_location is given
   std::optional<GridValues> time;                 ///< [s]
   std::array<std::optional<GridValues>, 3> grid;  ///< x, y [m], angle [rad]
   std::vector<std::pair<int, double>> clearance;  ///< joint and radius [m], in place of the joint's own

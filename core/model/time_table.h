@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "base/expression.h"
@@ -14,6 +15,16 @@ enum class Interpolation { cubic, linear };
 enum class SplineEnds { natural, clamped, periodic };
 /// Before the first and after the last time: the end value at rest, the period again, or no value.
 enum class Outside { hold, repeat, error };
+
+/// What a table was read from, as written.
+struct TableSource {
+  std::string file;             ///< path; empty: points in the model file
+  std::string time, value;      ///< names of columns; empty: the first and the second
+  std::string time_unit, unit;  ///< of the columns; empty: SI
+  Interpolation interpolation = Interpolation::cubic;
+  SplineEnds ends = SplineEnds::natural;
+  Outside outside = Outside::hold;
+};
 
 /// Cubic spline (C2) or straight lines through (times, values). On a piece of length h from (t0, y0) to (t1, y1), with
 /// a = (t1 - t)/h, b = (t - t0)/h and second derivatives M0, M1 at its ends,

@@ -32,8 +32,10 @@ int rank(const std::string& channel, const Names& loose) {
   const std::string kind = channel.substr(0, channel.find('.'));
   if (kind == "energy") return 0;
   if (kind == "frame") return 1;
-  if (kind == "driver")
-    return channel.ends_with(".ex") || channel.ends_with(".ey") || channel.ends_with(".eangle") ? 1 : 2;
+  if (kind == "driver") {
+    const auto is = [&](const char* error) { return channel.ends_with(error); };
+    return is(".ex") || is(".ey") || is(".ez") || is(".eangle") ? 1 : 2;
+  }
   if (kind == "joint" && loose.contains(element_of(channel))) return 3;
   return kind == "body" ? 4 : 5;
 }

@@ -23,8 +23,11 @@ DriveKinks::DriveKinks(const Model& model, Of of) {
     return;
   }
   for (const InverseKinematics& entry : model.kinematics) {
-    for (const std::optional<Expression>& component : entry.path) {
+    for (const std::optional<Expression>& component : entry.path.functions) {
       if (component) add(*component, model.settings);
+    }
+    for (const auto& table : entry.path.tables) {
+      if (table) tables_.push_back(table.get());
     }
   }
 }

@@ -98,8 +98,11 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
     int moved = 0;
     for (int d = entry.first_driver; d < entry.first_driver + entry.driver_count; ++d)
       moved = std::max(moved, bends(d));
-    for (const std::optional<Expression>& component : entry.path) {
+    for (const std::optional<Expression>& component : entry.path.functions) {
       if (component) add("driver", entry.name, *component, CornerKind::motion, Unit::other, moved);
+    }
+    for (const auto& table : entry.path.tables) {
+      if (table) tables_.push_back({&entry.name, table.get(), CornerKind::motion, Unit::other, moved});
     }
   }
   for (const AppliedForce& force : model.forces) {

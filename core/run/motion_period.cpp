@@ -20,7 +20,7 @@ std::optional<double> period_of(const Expression& expression, DriverKind kind, d
 std::optional<double> motion_period(const Model& model, const Driver& driver, double from, double longest) {
   if (driver.kinematics >= 0) {
     double period = 0.0;
-    for (const auto& part : model.kinematics[static_cast<std::size_t>(driver.kinematics)].path) {
+    for (const auto& part : model.kinematics[static_cast<std::size_t>(driver.kinematics)].path.functions) {
       if (!part) continue;
       const auto of_part = period_of(*part, DriverKind::position, from, longest);
       const auto common = of_part ? common_period(period, *of_part) : std::nullopt;

@@ -150,10 +150,16 @@ bool Observer::observe_path(int index, const Point& point, const Evaluation& e, 
   }
   const int marker = system_.model().kinematics[at(index)].marker;
   const PathColumns& columns = channels_.paths[at(index)];
-  const double turned = system_.markers().angle(marker, e.q) - wanted[2].value;
-  row[at(columns.error_x)] = e.markers[at(marker)].position[0] - wanted[0].value;
-  row[at(columns.error_y)] = e.markers[at(marker)].position[1] - wanted[1].value;
-  row[at(columns.error_angle)] = without_turns(turned);
+  const MarkerKinematics& frame = e.markers[at(marker)];
+  row[at(columns.error_x)] = frame.position[0] - wanted[0].value;
+  row[at(columns.error_y)] = frame.position[1] - wanted[1].value;
+  if (columns.error_z < 0) {
+    row[at(columns.error_angle)] = without_turns(system_.markers().angle(marker, e.q) - wanted[2].value);
+    return true;
+  }
+  const Vector3 turn = turn_between(wanted.turning.rotation.data(), frame.rotation);
+  row[at(columns.error_z)] = frame.position[2] - wanted[2].value;
+  row[at(columns.error_angle)] = std::hypot(turn[0], turn[1], turn[2]);
   return true;
 }
 

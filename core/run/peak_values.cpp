@@ -45,7 +45,7 @@ void PeakValues::of(std::span<const double> row, std::span<double> out) const {
   }
   for (const DriverColumns& driver : channels_.drivers) *to++ = std::abs(value(driver.effort));
   for (const PathColumns& path : channels_.paths) {
-    *to++ = length_of(value(path.error_x), value(path.error_y));
+    *to++ = length_of(value(path.error_x), value(path.error_y), value(path.error_z));
     *to++ = std::abs(value(path.error_angle));
   }
   for (const int column : force_columns_) {

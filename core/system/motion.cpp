@@ -71,21 +71,15 @@ FollowedMotion::Work& Motions::own_part(MotionWork& work) const {
 
 bool Motions::path(int kinematics, double t, PathPose& pose, MotionWork& work, MotionFault& fault) const noexcept {
   const InverseKinematics& entry = model_.kinematics[static_cast<std::size_t>(kinematics)];
-  const bool whole = entry.path[0] && entry.path[1] && entry.path[2];
-  if (!whole) {
+  if (!entry.path.gives_all(path_numbers(model_.space))) {
     pose = {};
     if (followed_ && !followed_->frame(kinematics, t, pose, own_part(work), fault)) return false;
   }
-  for (std::size_t i = 0; i < pose.size(); ++i) {
-    EvaluationFailure failure;
-    if (!entry.path[i]) continue;
-    if (!entry.path[i]->evaluate(t, pose[i], failure)) {
-      fault.kinematics = kinematics;
-      fail(fault, failure.id, failure.reason);
-      return false;
-    }
-  }
-  return true;
+  EvaluationFailure failure;
+  if (entry.path.evaluate(t, pose, failure)) return true;
+  fault.kinematics = kinematics;
+  fail(fault, failure.id, failure.reason);
+  return false;
 }
 
 Jet Motions::platform_angle(int driver, const PathPose& frame) const {

@@ -8,6 +8,7 @@
 
 #include "freeplay/parameter.h"
 #include "model/leg.h"
+#include "model/path_pose.h"
 #include "system/antiderivative.h"
 
 namespace freeplay {
@@ -20,9 +21,6 @@ struct MotionFault {
   const char* id = "";  ///< "ik-unreachable", "bad-expression", "bad-number"
   char text[256] = "";
 };
-
-/// Pose that an inverse-kinematics frame is asked for: x, y [m], angle [rad].
-using PathPose = std::array<Jet, 3>;
 
 /// Drivers that follow a path through the whole mechanism instead of a leg of their own.
 class FollowedMotion {

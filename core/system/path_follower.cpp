@@ -28,7 +28,8 @@ PathFollower::Work::Work(const System& system, int rows)
       e(system),
       solver(rows, system.layout().nv()),
       right(at(rows)),
-      step(at(system.layout().nv())) {}
+      step(at(system.layout().nv())),
+      before(state.q().size()) {}
 
 PathFollower::PathFollower(const System& closed, std::span<const double> q, std::span<const double> h)
     : model_(closed.model()), system_(closed.model(), Variant::closed), lost_(std::numeric_limits<double>::infinity()) {
@@ -93,17 +94,16 @@ bool PathFollower::certain(const State& left, const State& right, Work& work) {
 }
 
 double PathFollower::distance(std::span<const double> a, std::span<const double> b) const {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    largest = std::max(largest, std::abs(a[i] - b[i]) / (i % 3 == 2 ? 1.0 : system_.size()));
-  }
-  return largest;
+  std::vector<double> way(at(system_.layout().nv()));
+  system_.coordinates().difference(b, a, way);
+  return scaled(way);
 }
 
 double PathFollower::scaled(std::span<const double> step) const {
   double largest = 0.0;
   for (std::size_t i = 0; i < step.size(); ++i) {
-    const double size = std::abs(step[i]) / (i % 3 == 2 ? 1.0 : system_.size());
+    const bool turn = system_.coordinates().is_turn(static_cast<int>(i));
+    const double size = std::abs(step[i]) / (turn ? 1.0 : system_.size());
     if (!(size <= largest)) largest = size;  // keeps a NaN
   }
   return largest;
@@ -127,15 +127,16 @@ bool PathFollower::assemble(double t, Work& work, MotionFault& fault) const noex
     if (const int row = row_of_[at(entry.row())]; row >= 0) work.solver.matrix(row, entry.col()) += entry.value();
   }
   for (std::size_t i = 0; i < kept_.size(); ++i) work.right[i] = -work.e.phi[at(kept_[i])];
+  const int width = system_.layout().body_velocities();
   for (std::size_t p = 0; p < paths_.size(); ++p) {
     const PathRow& path = paths_[p];
     const int r = static_cast<int>(kept_.size() + p);
     PathPose pose;
     if (!system_.motions().path(path.kinematics, t, pose, fault)) return false;
-    double row[3] = {};
-    if (path.body != ground) path.entries(work.e, row);
-    for (int c = 0; c < 3 && path.body != ground; ++c) work.solver.matrix(r, 3 * path.body + c) = row[c];
-    work.right[at(r)] = -path.residual(system_, here, work.e, pose[at(path.component)].value);
+    double row[6] = {};
+    if (path.body != ground) path.entries(system_, work.e, row);
+    for (int c = 0; c < width && path.body != ground; ++c) work.solver.matrix(r, width * path.body + c) = row[c];
+    work.right[at(r)] = -path.residual(system_, here, work.e, pose);
   }
   return true;
 }
@@ -145,14 +146,16 @@ PathFollower::Found PathFollower::solve(double t, const State& from, Work& work,
   state.assign(from);
   const double dt = t - from.t();
   const std::span<double> q = state.q(), v = state.v(), a = state.a();
-  for (std::size_t i = 0; i < q.size(); ++i) q[i] += dt * (v[i] + 0.5 * dt * a[i]);
+  for (std::size_t i = 0; i < v.size(); ++i) work.step[i] = dt * (v[i] + 0.5 * dt * a[i]);
+  system_.coordinates().retract(from.q(), work.step, q);
   double travelled = 0.0, correction = 1.0;
   for (int iteration = 0; correction > last_correction; ++iteration) {
     if (iteration == most_iterations) return Found::no;
     if (!assemble(t, work, fault)) return Found::fault;
     if (!work.solver.factor()) return Found::no;
     work.solver.solve(work.right, work.step);
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] += work.step[i];
+    std::ranges::copy(q, work.before.begin());
+    system_.coordinates().retract(work.before, work.step, q);
     correction = scaled(work.step);
     travelled += correction;
     if (!(travelled <= longest_way)) return Found::no;
@@ -168,8 +171,7 @@ PathFollower::Found PathFollower::solve(double t, const State& from, Work& work,
     for (std::size_t p = 0; p < paths_.size(); ++p) {
       const PathRow& path = paths_[p];
       if (!system_.motions().path(path.kinematics, t, pose, fault)) return Found::fault;
-      const Jet& wanted = pose[at(path.component)];
-      work.right[kept_.size() + p] = speeds ? wanted.rate : path.gamma(work.e, wanted.acceleration);
+      work.right[kept_.size() + p] = speeds ? path.speed(pose) : path.gamma(system_, work.e, pose);
     }
     work.solver.solve(work.right, speeds ? v : a);
     if (speeds && !assemble(t, work, fault)) return Found::fault;
@@ -191,10 +193,22 @@ const State& PathFollower::nearest(double t) const {
 void PathFollower::fail(double t, MotionFault& fault) const noexcept {
   fault.kinematics = paths_.front().kinematics;
   fault.id = "ik-unreachable";
-  const auto end =
-      fmt::format_to_n(fault.text, sizeof fault.text - 1, "the mechanism cannot follow the path at t = {:.9g} s{}", t,
-                       paths_.size() > 3 ? " (of this entry or another)" : "");
-  *end.out = '\0';
+  const FramePath& path = model_.kinematics[at(fault.kinematics)].path;
+  const bool several = fault.kinematics != paths_.back().kinematics;
+  char* to = fault.text;
+  const auto add = [&](const char* words, double number, const char* unit) {
+    const std::ptrdiff_t room = fault.text + sizeof fault.text - 1 - to;
+    to = fmt::format_to_n(to, static_cast<std::size_t>(room), "{}{:.9g}{}", words, number, unit).out;
+  };
+  add("the mechanism cannot follow the path at t = ", t, several ? " s (of this entry or another)" : " s");
+  PathPose pose;
+  EvaluationFailure none;
+  const std::size_t lengths = model_.space == Space::planar ? 2 : 3;
+  if (path.gives_all(lengths) && path.evaluate(t, pose, none)) {
+    constexpr const char* words[] = {", where x = ", ", y = ", ", z = "};
+    for (std::size_t i = 0; i < lengths; ++i) add(words[i], pose[i].value, " m");
+  }
+  *to = '\0';
 }
 
 std::unique_ptr<FollowedMotion::Work> PathFollower::make_work() const {
@@ -213,19 +227,20 @@ bool PathFollower::evaluate(double t, Span<TimeValue> out, FollowedMotion::Work&
                             MotionFault& fault) const noexcept {
   Work& work = static_cast<Work&>(own);
   if (!reach(t, work, fault)) return false;
+  const std::size_t width = at(system_.layout().body_velocities());
   for (const int d : drivers_) {
     const int j = model_.drivers[at(d)].joint;
     const JointElement& joint = model_.joints[at(j)];
-    double row[6], bias = 0.0;
+    double row[12], bias = 0.0;
     system_.joints().coordinate_row(j, work.e, row, bias);
     TimeValue& value = out[at(d)];
     value = {work.e.coordinate[at(j)], 0.0, bias};
     const BodyId bodies[2] = {model_.markers[at(joint.marker_a)].body, model_.markers[at(joint.marker_b)].body};
     for (std::size_t k = 0; k < 2; ++k) {
       if (bodies[k] == ground) continue;
-      for (std::size_t c = 0; c < 3; ++c) {
-        value.rate += row[3 * k + c] * work.state.v()[3 * at(bodies[k]) + c];
-        value.acceleration += row[3 * k + c] * work.state.a()[3 * at(bodies[k]) + c];
+      for (std::size_t c = 0; c < width; ++c) {
+        value.rate += row[width * k + c] * work.state.v()[width * at(bodies[k]) + c];
+        value.acceleration += row[width * k + c] * work.state.a()[width * at(bodies[k]) + c];
       }
     }
   }
@@ -240,12 +255,22 @@ bool PathFollower::frame(int kinematics, double t, PathPose& pose, FollowedMotio
   const BodyId body = model_.markers[at(marker)].body;
   const Evaluation& e = work.e;
   const MarkerKinematics& k = e.markers[at(marker)];
-  const double rest[3] = {0.0, 0.0, 0.0};
   double acceleration[6];
-  planar::marker_acceleration(body == ground ? rest : &work.state.a()[3 * at(body)], e.arms[at(marker)], acceleration);
-  pose[0] = {k.position[0], k.velocity[0], acceleration[0]};
-  pose[1] = {k.position[1], k.velocity[1], acceleration[1]};
-  pose[2] = {system_.markers().angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
+  by_space(model_.space, [&]<class Bodies>(Bodies) {
+    const double rest[Bodies::velocities] = {};
+    const double* a = body == ground ? rest : &work.state.a()[Bodies::velocities * at(body)];
+    marker_acceleration(a, e.arms_of<Bodies>()[at(marker)], acceleration);
+  });
+  for (std::size_t i = 0; i < 3; ++i) pose[i] = {k.position[i], k.velocity[i], acceleration[i]};
+  if (model_.space == Space::planar) {
+    pose[2] = {system_.markers().angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
+    return true;
+  }
+  std::copy_n(k.rotation, 9, pose.turning.rotation.begin());
+  std::copy_n(k.angular_velocity, 3, pose.turning.velocity.begin());
+  std::copy_n(acceleration + 3, 3, pose.turning.acceleration.begin());
+  const std::array<Jet, 3> angles = roll_pitch_yaw_of(pose.turning);
+  std::ranges::copy(angles, pose.numbers.begin() + 3);
   return true;
 }
 

@@ -32,7 +32,7 @@ class PathFollower final : public FollowedMotion {
     State state;
     Evaluation e;
     LeastSquares solver;
-    std::vector<double> right, step;
+    std::vector<double> right, step, before;
     std::vector<SparseEntry> entries;
   };
   enum class Found { yes, no, fault };

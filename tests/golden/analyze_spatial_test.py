@@ -128,7 +128,7 @@ class AnalyzeInSpace(ProgramTest):
                             (["ik", "stewart.yaml", "--pose", "0,0,0.6", "--branches"], "--branches"),
                             (["ik", "stewart.yaml", "--pose", "0,0,0.6", "--elbow", "1"], "--elbow")):
             self.assertIn(what + " works on planar models only, but 'stewart.yaml' is spatial [type-space]", self.message(*words, code=3))
-        for key in ("path: {x: 0}", "grid: {x: [0, 1]}", "elbow: 1"):
+        for key in ("grid: {x: [0, 1]}", "elbow: 1"):
             self.write("refused.yaml", stewart().replace("frame: platform,", "frame: platform, %s," % key))
             err = self.message("error", "refused.yaml", "--pose", "0,0,0.6", code=3)
             self.assertIn("refused.yaml:%d:29: error" % len(stewart().splitlines()), err)

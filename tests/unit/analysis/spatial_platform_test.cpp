@@ -374,9 +374,9 @@ TEST(FeasibleSet, FarthestPointsOfKnownSetsInSpace) {
   EXPECT_LE(ball, 1.0 + 1e-4);
 }
 
-TEST(SpatialPlatform, PathsGridsAndWorkingModesAreRefusedAtTheirPlace) {
+TEST(SpatialPlatform, GridsAndWorkingModesAreRefusedAtTheirPlace) {
   const Stewart stewart;
-  for (const char* line : {"path: {x: 0}", "grid: {x: {linspace: [0, 1, 3]}}", "elbow: 1"}) {
+  for (const char* line : {"grid: {x: {linspace: [0, 1, 3]}}", "elbow: 1"}) {
     const std::string model =
         test::replaced(stewart.model(), "frame: platform,", std::string("frame: platform, ") + line + ",");
     const auto text = [&] {

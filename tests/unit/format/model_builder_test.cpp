@@ -374,7 +374,7 @@ TEST(ModelBuilder, ExpandsInverseKinematicsToOneDriverPerJoint) {
   EXPECT_EQ(model.model->drivers[1].elbow, -1);
   ASSERT_EQ(model.model->kinematics.size(), 1u);
   EXPECT_EQ(model.model->kinematics[0].driver_count, 2);
-  EXPECT_FALSE(model.model->kinematics[0].path[2].has_value());
+  EXPECT_FALSE(model.model->kinematics[0].path.gives(2));
   EXPECT_EQ(model.model->kinematics[0].frame_location.column, 36);
 }
 
