@@ -1,9 +1,14 @@
 #include "load/robot_file.h"
 
-#include <string_view>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "mjcf/document.h"
 #include "sdf/document.h"
+#include "urdf/element.h"
 
 namespace freeplay {
 namespace {
@@ -24,7 +29,15 @@ std::optional<urdf::Sections> add_robot_sections(const std::string& text, const 
   const char* id = holds("<mujoco") ? "bad-mjcf" : holds("<sdf") ? "bad-sdf" : "bad-urdf";
   const auto xml = parse_xml(text, *file_name, id, diagnostics);
   if (!xml) return std::nullopt;
-  const std::string_view root = xml->root().Name();
+  const std::string root = xml->root().Name();
+  const std::vector<std::string> roots{"robot", "mujoco", "sdf"};
+  if (std::ranges::find(roots, root) == roots.end()) {
+    urdf::Messages messages(*file_name, diagnostics);
+    messages.error(urdf::name_spot(xml->root()), "bad-urdf",
+                   fmt::format("the root element must be 'robot', 'mujoco' or 'sdf', not '{}'", root),
+                   messages.suggest(root, roots));
+    return std::nullopt;
+  }
   const auto read = root == "mujoco" ? mjcf::add_sections : root == "sdf" ? sdf::add_sections : urdf_sections;
   return read(*xml, file_name, options, document, diagnostics);
 }

@@ -310,13 +310,13 @@ void Element::finish_attributes() {
 }
 
 void Element::finish_children() {
-  std::vector<std::string> unwritten;
+  std::vector<std::string> unwritten = repeated_;
   for (const std::string& name : children_) {
     if (xml_.FirstChildElement(name.c_str()) == nullptr) unwritten.push_back(name);
   }
   for (const XmlElement& child : XmlChildren(xml_)) {
     const std::string name = child.Name();
-    if (holds(children_, name)) continue;
+    if (holds(children_, name) || holds(repeated_, name)) continue;
     if (holds(passed_, name)) {
       messages_.ignore(name);
       continue;

@@ -100,7 +100,7 @@ class Element {
   XmlElement* child(const std::string& name);
   XmlElement* required_child(const std::string& name);
   /// Children of which there may be any number, and which are read elsewhere.
-  void know(const std::string& name) { children_.push_back(name); }
+  void know(const std::string& name) { repeated_.push_back(name); }
   /// Children that are known and not used: counted.
   void pass_over(const std::string& name);
 
@@ -118,7 +118,7 @@ class Element {
   std::string owner_;
   Messages& messages_;
   bool exact_;
-  std::vector<std::string> attributes_, children_, passed_;
+  std::vector<std::string> attributes_, children_, repeated_, passed_;
   std::vector<std::pair<std::string, std::string>> guesses_;  ///< attributes and their values
 };
 

@@ -24,6 +24,16 @@ void doubt_turns(const XmlElement& xml, const std::vector<double>& numbers, Mess
   }
 }
 
+bool in_degrees(const XmlElement& xml, Messages& messages) {
+  const char* flag = xml.Attribute("degrees");
+  const std::string_view word = flag == nullptr ? "false" : flag;
+  if (word == "true" || word == "1") return true;
+  if (word == "false" || word == "0") return false;
+  messages.error(spot_of(xml, "degrees"), "bad-urdf",
+                 fmt::format("'degrees' of a pose must be true or false, not '{}'", word));
+  return false;
+}
+
 Eigen::Matrix3d turn_of_quaternion(const XmlElement& xml, const std::vector<double>& numbers, Messages& messages) {
   Eigen::Quaterniond turn(numbers[6], numbers[3], numbers[4], numbers[5]);
   const double length = turn.coeffs().stableNorm();
@@ -87,7 +97,7 @@ Eigen::Isometry3d text_pose(const XmlElement& xml, Messages& messages) {
   const std::vector<double> numbers = text_numbers(xml, quaternion ? 7 : 6, messages);
   if (numbers.empty()) return pose;
   pose.translation() << numbers[0], numbers[1], numbers[2];
-  const bool degrees = xml.Attribute("degrees", "true") != nullptr || xml.Attribute("degrees", "1") != nullptr;
+  const bool degrees = in_degrees(xml, messages);
   if (quaternion) {
     pose.linear() = turn_of_quaternion(xml, numbers, messages);
   } else if (numbers[3] != 0.0 || numbers[4] != 0.0 || numbers[5] != 0.0) {

@@ -362,6 +362,8 @@ class Messages(SdfTest):
                 (arm("0 1 0", "0 0 0"), "has zero length"),
                 (arm("0 1 0", "0 1"), "'xyz' must be 3 numbers, not 2"),
                 (arm("<mass>1", "<mass>1,0"), "'mass': '1,0' is not a number"),
+                (arm("<link", '<lnik name="b"/><link'), "unknown element 'lnik' in model 'm'"),
+                (arm("<pose>", '<pose degrees="yes">'), "'degrees' of a pose must be true or false, not 'yes'"),
                 (arm("<mass>", "<mas>").replace("</mass>", "</mas>"), "unknown element 'mas' in the inertial of link 'a'"),
                 (arm('<link name="a">', '<link name="world">'), "the name 'world' is one of SDFormat's own"),
                 (arm("<link", '<frame name="a"/><link'), "the name 'a' exists already: first on line"),
@@ -385,6 +387,12 @@ class Messages(SdfTest):
                 self.assertIn(words, err)
                 self.assertRegex(err, r"bad\.sdf:\d+:\d+: error")
                 self.assertNotIn("urdf]", err)
+
+
+    def test_the_root_element_says_the_format(self):
+        err = self.complaint("<sfd/>")
+        self.assertIn("bad.sdf:1:2: error: the root element must be 'robot', 'mujoco' or 'sdf', not 'sfd'", err)
+        self.assertIn("did you mean 'sdf'?", err)
 
 
 class Files(SdfTest):
