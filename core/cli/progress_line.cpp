@@ -46,7 +46,9 @@ std::string progress_text(double start, double end, double t, long steps, double
 ProgressLine::ProgressLine(double start, double end, bool shown)
     : start_(start), end_(end), shown_(shown), began_(std::chrono::steady_clock::now()) {}
 
-ProgressLine::~ProgressLine() {
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::clear() {
   if (width_ == 0) return;
   show("");
   std::fputc('\r', stderr);

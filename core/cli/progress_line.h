@@ -24,6 +24,8 @@ class ProgressLine {
   /// Another line, where it is `due()`.
   void show(const std::string& line);
   bool due();
+  /// Takes the line away, as for another text.
+  void clear();
 
  private:
   double elapsed() const;

@@ -200,6 +200,10 @@ class RunJob {
       progress.update(t, steps);
       if (!recording_.ok()) stop = 1;
     };
+    hooks.notice = [&](const std::string& text) {
+      progress.clear();
+      warn(text);
+    };
     return run_with(*simulation_, hooks, inputs_);
   }
 

@@ -44,6 +44,7 @@ AdaptiveRun::AdaptiveRun(const RunParts& parts, EventPursuit& pursuit)
       control_(step_limits(parts.run.settings), error_power(parts.run.integrator_layout)),
       budget_(load_errors(error_power(parts.run.integrator_layout)) / accuracy_per_step,
               error_power(parts.run.integrator_layout)),
+      slow_(parts.run, parts.failure),
       velocity_allowed_(parts.run.allowed) {}
 
 bool AdaptiveRun::advance(const RunHooks& hooks, const RunGoal& goal) {
@@ -62,6 +63,7 @@ bool AdaptiveRun::advance(const RunHooks& hooks, const RunGoal& goal) {
       return false;
     }
     parts_.recorder.pass_rows();
+    if (hooks.notice && slow_.has_notice()) hooks.notice(slow_.take_notice());
     if (hooks.stepped) hooks.stepped();
     if (parts_.end.check_interrupt(hooks)) continue;
     parts_.recorder.know_row();  // of the summary; rows stay those of the whole run
@@ -276,7 +278,7 @@ bool AdaptiveRun::accept(const Search& search) {
     return false;
   // Forces that begin or end at an event do so once the joint has handled it.
   if (search.hunted.joint >= 0 && !at_kink) control_.cut(run_.e_accepted->acting);
-  return true;
+  return slow_.pass(search.limiting);
 }
 
 // Whether to try another length of the step that was just made, and back to the one asked for after all of them.

@@ -9,6 +9,7 @@
 #include "run/force_kinks.h"
 #include "run/goal.h"
 #include "run/parts.h"
+#include "run/slow_steps.h"
 #include "run/step_control.h"
 
 namespace freeplay {
@@ -19,10 +20,12 @@ class AdaptiveRun {
 
   /// From the accepted state to `goal`. False once the run is over.
   bool advance(const RunHooks& hooks, const RunGoal& goal);
+  /// Once the run is over.
+  void doubt_steps() { slow_.add_doubt(); }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.control_, self.budget_, self.velocity_allowed_);
+    archive(self.control_, self.budget_, self.velocity_allowed_, self.slow_);
   }
 
  private:
@@ -66,7 +69,8 @@ class AdaptiveRun {
   EventPursuit& pursuit_;
   ForceKinks force_kinks_;
   StepControl control_;
-  ErrorBudget budget_;       // of steps over short loads
+  ErrorBudget budget_;  // of steps over short loads
+  SlowSteps slow_;
   double velocity_allowed_;  // by which velocities may err in the step to come [m/s]
 };
 

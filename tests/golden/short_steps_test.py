@@ -1,0 +1,39 @@
+"""Steps so short that a run would not end are told, with what to look at."""
+import json
+import unittest
+
+from program import ProgramTest
+
+# The damper alone brings the block to rest within m/c seconds, which an explicit method follows step by step.
+MODEL = """freeplay: 1
+bodies: {puck: {mass: 1 kg, inertia: 0.01, frames: {tip: [20 mm, 0]}}}
+joints: {slide: {type: prismatic, between: [ground, puck]}}
+frames: {ground/wall: [300 mm, 0]}
+forces:
+  buffer: {type: spring-damper, between: [ground/wall, puck/tip], stiffness: 1e9, free_length: 270 mm, damping: $c}
+parameters: {c: 1e12}
+simulation: {end: 2 s, accuracy: 1 um, integrator: dopri5}
+"""
+
+
+class ShortSteps(ProgramTest):
+    def test_a_run_that_would_take_days_ends_and_names_the_cause(self):
+        self.write("m.yaml", MODEL)
+        _, err = self.freeplay("run", "m.yaml", "--out", "r", code=4)
+        self.assertRegex(err, r"error: t = \S+ s: the run does not come to its end: steps of \S+ s at t = \S+ s, of which "
+                              r"the whole run would take \de\+11; likely cause: 'buffer'")
+        self.assertEqual(100000, json.loads(self.read("r", "summary.json"))["counts"]["steps"])
+
+    def test_a_run_of_hours_is_told_while_it_goes_on(self):
+        self.write("m.yaml", MODEL.replace("simulation: {", "simulation: {stop: [{channel: body.puck.x, above: -1, after: 10 ms}], "))
+        _, err = self.freeplay("run", "m.yaml", "--out", "r", "--set", "c=1e8")
+        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \d(\.\d)?e\+07")
+
+    def test_a_run_of_ordinary_steps_is_not_told_so(self):
+        self.write("m.yaml", MODEL.replace("end: 2 s", "end: 20 ms"))
+        out, err = self.freeplay("run", "m.yaml", "--out", "r", "--set", "c=1e5")
+        self.assertNotIn("of which the whole run", out + err)
+
+
+if __name__ == "__main__":
+    unittest.main()
