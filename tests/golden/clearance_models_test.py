@@ -1,4 +1,5 @@
 """Joints with clearance: what their block says is what the journal does."""
+import csv
 import math
 import unittest
 
@@ -73,6 +74,56 @@ simulation: {end: 20 ms, step: 5 us, output: {interval: 0.1 ms}%s}
                               "material: {E: 200 GPa, nu: 0.5}}"), id="out-of-range", line=5)
         self.refusal(self.pin("{bearing_radius: 10 mm, radial_clearance: 0.3 mm, contact: {law: hertz}, "
                               "material: {bearing: {E: 200 GPa, nu: 0.3}}}"), id="missing-key", line=5)
+
+
+MOVED_WALL = """%s
+bodies:
+  carrier: {mass: 0.25, inertia: %s, frames: {F: %s}}
+  wall: {mass: 1e30, inertia: %s, frames: {F: %s}}
+joints:
+  rail: {type: prismatic, between: [ground, carrier]%s}
+  B: {type: %s, between: [carrier/F, wall/F], clearance: {%s, initial: %s, contact: {law: hertz, K: 1e9}}}
+drivers:
+  motor: {joint: rail, kind: position, value: 0.9765625 mm + 64 m/s^2 * (t - 1.953125 ms) * (3.90625 ms - t)}
+simulation: {end: 7.8125 ms, %s, output: {interval: 0.9765625 ms}}
+"""
+PLAY = "0.9765625 mm"
+AHEAD = "{eccentricity: [-0.48828125 mm, 0], velocity: [-0.375 m/s, 0]}"
+ACROSS = "{eccentricity: [0, -0.48828125 mm], velocity: [0, -0.375 m/s]}"
+IN_SPACE = "{eccentricity: [-0.48828125 mm, 0, 0], velocity: [-0.375 m/s, 0, 0]}"
+
+
+class EventsAtTheEndsOfSteps(ModelTest):
+    """Bodies that are moved through their play: all numbers are sums of few powers of two, so that penetrations are
+    zero, and not nearly so, at 8 and 16 steps."""
+
+    def moved(self, kind, play, initial, simulation, frame="[0, 0]", spatial=False):
+        light, heavy = ("[1e-5, 1e-5, 1e-5]", "[1e30, 1e30, 1e30]") if spatial else ("1e-5", "1e30")
+        return MOVED_WALL % ("space: spatial" if spatial else "", light, frame, heavy, frame,
+                             ", axis: [1, 0, 0]" if spatial else "", kind, play, initial, simulation)
+
+    def test_every_contact_has_one_begin_and_one_end(self):
+        pin = ("revolute", "radial_clearance: " + PLAY, AHEAD)
+        slide = ("prismatic", "length: 40 mm, gap: " + PLAY, ACROSS)
+        steps = "step: 0.244140625 ms, integrator: "
+        cases = [(*pin, steps + method) for method in ("bathe", "newmark", "hht", "generalized-alpha")]
+        cases += [(*pin, "accuracy: 1 nm, integrator: " + method)
+                  for method in ("bathe", "newmark", "hht", "generalized-alpha", "dopri5", "verner6", "verner7", "arkode")]
+        cases += [(*slide, steps + "bathe", "{angle: -90 deg}"), (*slide, "accuracy: 1 nm", "{angle: -90 deg}")]
+        ball = ("spherical", "radial_clearance: " + PLAY, IN_SPACE)
+        bearing = ("revolute, axis: [0, 0, 1]", "length: 20 mm, bearing_radius: 10 mm, radial_clearance: " + PLAY, IN_SPACE)
+        cases += [(*joint, simulation, "[0, 0, 0]", True) for joint in (ball, bearing)
+                  for simulation in (steps + "bathe", "accuracy: 1 nm")]
+        for case in cases:
+            with self.subTest(case=case):
+                self.run_model(self.moved(*case))
+                events = list(csv.DictReader(self.read("out", "events.csv").splitlines()))
+                contacts = 2 if "length" in case[1] else 1
+                self.assertEqual(["contact_begin"] * contacts + ["contact_end"] * contacts,
+                                 [event["kind"][event["kind"].index("contact"):] for event in events])
+                for event, time in zip(events, [1.953125e-3] * contacts + [3.90625e-3] * contacts):
+                    self.assertAlmostEqual(time, float(event["time"]), delta=1e-9)
+                    self.assertAlmostEqual(0.125, float(event["speed"]), delta=1e-6)
 
 
 if __name__ == "__main__":

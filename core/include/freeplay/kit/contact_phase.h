@@ -187,9 +187,10 @@ inline void stay_in_flight(Span<double> history) { history[predicted] = 0.0; }
 /// `share`: of the law's force that this contact has.
 inline void commit(const JointInput& in, const Approach& gap, const ContactLawRef& law, double share,
                    Span<double> history) {
-  // Crossings without an event, because delta stood at its zero to rounding when the step began.
+  // Crossings without an event, because delta stood at its zero to rounding when the step began. One that stands at
+  // zero itself crosses in the step to come, which has its event.
   if (history[phase] == flight && gap.penetration > 0.0 && gap.rate > 0.0) begin(in.t, gap.rate, false, history);
-  if (history[phase] != flight && gap.penetration <= 0.0 && gap.rate <= 0.0) reset(history);
+  if (history[phase] != flight && gap.penetration < 0.0 && gap.rate <= 0.0) reset(history);
   stay_in_flight(history);
   if (history[phase] == flight) return;
   // A contact that began at the very end of the step has not taken it.
