@@ -4,13 +4,14 @@
 #include <exception>
 #include <numbers>
 
+#include "base/angle.h"
+
 namespace freeplay {
 namespace {
 
 using svg::Point;
 
 constexpr int arc_parts = 48, curve_parts = 240;  // of a whole turn; of a curve
-constexpr double whole_turn = 2.0 * std::numbers::pi;
 
 const ParameterValue* value_of(const JointElement& joint, const char* name) {
   if (!joint.parameters) return nullptr;

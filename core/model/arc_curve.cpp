@@ -3,18 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "base/angle.h"
 
 namespace freeplay {
 namespace {
 
 using Vector = std::array<double, 2>;
 
-constexpr double pi = std::numbers::pi, whole_turn = 2.0 * pi;
+constexpr double quarter_turn = 0.25 * whole_turn;
 constexpr double rounding = 1e-9;  // of written numbers: circles touch, an arc has no length
 
 double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1]; }
@@ -124,7 +125,7 @@ class ArcCurve::Maker {
     const Arc& arc = arcs_[i];
     const double low = std::min(in_[i], in_[i] + turn_[i]), high = low + std::abs(turn_[i]);
     // Along an arc p.n is least where n is opposite to the centre.
-    const double opposite = std::atan2(-arc.centre[1], -arc.centre[0]) + 0.5 * pi;
+    const double opposite = std::atan2(-arc.centre[1], -arc.centre[0]) + quarter_turn;
     const double inside = low + within_turn(opposite - low);
     for (const double heading : {low, high, inside <= high ? inside : low}) {
       const Vector p = point_on(arc, heading);
@@ -136,7 +137,7 @@ class ArcCurve::Maker {
 
   std::optional<Flaw> turning_back_in_x(std::size_t i) const {
     const double begin = std::remainder(in_[i], whole_turn), end = begin + turn_[i];
-    if (std::max(std::abs(begin), std::abs(end)) < 0.5 * pi) return std::nullopt;
+    if (std::max(std::abs(begin), std::abs(end)) < quarter_turn) return std::nullopt;
     return Flaw{i, "the curve turns back at " + place_text(point_on(arcs_[i], in_[i])) + ": x must increase along it"};
   }
 

@@ -19,7 +19,7 @@ class NoParameters : public Scope {
   std::vector<std::string> names() const override { return {}; }
 };
 
-Expression law(std::string_view text) { return Expression::compile(text, NoParameters(), true); }
+Expression speed_formula(std::string_view text) { return Expression::compile(text, NoParameters(), true); }
 
 Jet law_at(const Expression& expression, double t) {
   Jet jet;
@@ -30,21 +30,21 @@ Jet law_at(const Expression& expression, double t) {
 
 ExpressionError refusal(std::string_view text) {
   try {
-    law(text);
+    speed_formula(text);
   } catch (const ExpressionError& error) {
     return error;
   }
   return {"accepted", std::string(text), -1, -1};
 }
 
-void expect_jet(const Jet& jet, const Jet& wanted, double t) {
+void expect_motion(const Jet& jet, const Jet& wanted, double t) {
   EXPECT_NEAR(jet.value, wanted.value, 1e-12) << t;
   EXPECT_NEAR(jet.rate, wanted.rate, 1e-12) << t;
   EXPECT_NEAR(jet.acceleration, wanted.acceleration, 1e-12) << t;
 }
 
 /// The other half of a law is the first one seen from its end.
-Jet mirrored(const Jet& jet) { return {1.0 - jet.value, jet.rate, -jet.acceleration}; }
+Jet seen_from_end(const Jet& jet) { return {1.0 - jet.value, jet.rate, -jet.acceleration}; }
 
 // From 0.3 to 2.3 s with ramps of 0.5 s: 0.5 s + 1 s at full speed v make 1.5 v = 1.
 Jet first_half_of_trapezoid(double t) {
@@ -55,10 +55,10 @@ Jet first_half_of_trapezoid(double t) {
 }
 
 TEST(SpeedLaw, GoesByATrapezoidOfSpeed) {
-  const Expression formula = law("trapezoid(t, 0.3 s, 2.3 s, 0.5 s)");
+  const Expression formula = speed_formula("trapezoid(t, 0.3 s, 2.3 s, 0.5 s)");
   for (const double t : {0.0, 0.31, 0.5, 0.79, 0.9, 1.3}) {
-    expect_jet(law_at(formula, t), first_half_of_trapezoid(t), t);
-    expect_jet(law_at(formula, 2.6 - t), mirrored(first_half_of_trapezoid(t)), 2.6 - t);
+    expect_motion(law_at(formula, t), first_half_of_trapezoid(t), t);
+    expect_motion(law_at(formula, 2.6 - t), seen_from_end(first_half_of_trapezoid(t)), 2.6 - t);
   }
   EXPECT_NEAR(law_at(formula, 1e6).value, 1.0, 1e-15);
 }
@@ -76,20 +76,21 @@ Jet first_half_of_s_curve(double t) {
 }
 
 TEST(SpeedLaw, GoesByAnSCurveOfSpeed) {
-  const Expression formula = law("s_curve(t, 1, 5, 1.5, 0.4)");
+  const Expression formula = speed_formula("s_curve(t, 1, 5, 1.5, 0.4)");
   for (const double t : {0.0, 1.1, 1.39, 1.5, 2.05, 2.2, 2.49, 2.6, 3.0}) {
-    expect_jet(law_at(formula, t), first_half_of_s_curve(t), t);
-    expect_jet(law_at(formula, 6.0 - t), mirrored(first_half_of_s_curve(t)), 6.0 - t);
+    expect_motion(law_at(formula, t), first_half_of_s_curve(t), t);
+    expect_motion(law_at(formula, 6.0 - t), seen_from_end(first_half_of_s_curve(t)), 6.0 - t);
   }
 }
 
 TEST(SpeedLaw, RoundsTheWholeRampUnlessARiseIsGiven) {
-  const Expression given = law("s_curve(t, 0, 2, 0.6, 0.3)"), left_out = law("s_curve(t, 0, 2, 0.6)");
-  for (const double t : {0.1, 0.4, 1.0, 1.5, 1.8}) expect_jet(law_at(left_out, t), law_at(given, t), t);
+  const Expression given = speed_formula("s_curve(t, 0, 2, 0.6, 0.3)"),
+                   left_out = speed_formula("s_curve(t, 0, 2, 0.6)");
+  for (const double t : {0.1, 0.4, 1.0, 1.5, 1.8}) expect_motion(law_at(left_out, t), law_at(given, t), t);
 }
 
 TEST(SpeedLaw, HasNoPartAtFullSpeedWhereTheRampsMeet) {
-  const Expression formula = law("trapezoid(t, 0.1, 0.3, 0.1)");  // 0.3 - 0.1 is less than twice 0.1
+  const Expression formula = speed_formula("trapezoid(t, 0.1, 0.3, 0.1)");  // 0.3 - 0.1 is less than twice 0.1
   EXPECT_NEAR(law_at(formula, 0.2).value, 0.5, 1e-14);
   EXPECT_NEAR(law_at(formula, 0.2).rate, 10.0, 1e-12);
   EXPECT_EQ(formula.outline(0.0, 1.0).corners.size(), 3u);
@@ -98,7 +99,7 @@ TEST(SpeedLaw, HasNoPartAtFullSpeedWhereTheRampsMeet) {
 // A speed that jumps from -1e-18 to 0 would be a blow.
 TEST(SpeedLaw, EndsExactlyAtRest) {
   for (const char* text : {"trapezoid(t, 3, 5, 0.6)", "s_curve(t, 3, 5, 0.6, 0.1)", "s_curve(t, 3, 5, 0.7)"}) {
-    const Expression formula = law(text);
+    const Expression formula = speed_formula(text);
     double t = 5.0;
     for (int i = 0; i < 8; ++i) {
       const double rate = law_at(formula, t).rate;
@@ -110,7 +111,7 @@ TEST(SpeedLaw, EndsExactlyAtRest) {
 
 // At a corner itself and beside it, by the smallest steps of the time, speed and acceleration are those of one side.
 TEST(SpeedLaw, HasNoGapBetweenItsParts) {
-  const Expression formula = law("trapezoid(t, 0.1, 0.7, 0.2)");
+  const Expression formula = speed_formula("trapezoid(t, 0.1, 0.7, 0.2)");
   const double v = 2.5, a = 12.5;
   for (const double corner : {0.3, 0.5}) {
     double t = corner - 1e-15;
@@ -125,7 +126,7 @@ TEST(SpeedLaw, HasNoGapBetweenItsParts) {
 
 TEST(SpeedLaw, HasItsCornersWhereAccelerationOrJerkJumps) {
   const auto expect_corners = [](std::string_view text, const std::vector<double>& wanted) {
-    const std::vector<Corner> corners = law(text).outline(0.0, 6.0).corners;
+    const std::vector<Corner> corners = speed_formula(text).outline(0.0, 6.0).corners;
     ASSERT_EQ(corners.size(), wanted.size()) << text;
     for (std::size_t i = 0; i < wanted.size(); ++i) EXPECT_NEAR(corners[i].time, wanted[i], 1e-14) << text;
   };
