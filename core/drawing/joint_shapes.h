@@ -16,6 +16,7 @@ struct JointShape {
 class JointShapes {
  public:
   explicit JointShapes(const Model& model);
+  static std::vector<JointShape> of(const Model& model, const JointElement& joint);
   const std::vector<JointShape>& all() const { return all_; }
   /// Whether nothing but an outline is at a marker, which then is no point of its body: as the middle of a hollow.
   bool stands_for(std::size_t marker) const { return outlined_[marker] != 0; }

@@ -43,7 +43,6 @@ class Drawing {
     for (const Trace& trace : picture_.traces) draw_trace(trace);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) draw_body(static_cast<BodyId>(b));
     for (const JointElement& joint : model_.joints) draw_joint(joint);
-    for (const JointShape& shape : shapes_.all()) draw_shape(shape);
     for (const AppliedForce& force : model_.forces) draw_force(force);
     draw_frames();
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) out_.centre(page({q_[3 * b], q_[3 * b + 1]}));
@@ -114,9 +113,6 @@ class Drawing {
       const std::vector<Point> points = points_of(id, q);
       all.insert(all.end(), points.begin(), points.end());
     };
-    for (const JointShape& shape : shapes_.all()) {
-      for (const Point& p : shape.points) all.push_back(world(marker(shape.marker).body, p));
-    }
     for (const BodyId id : moved_) add(id, given_.q());
     for (const std::vector<double>& q : picture_.others) {
       for (std::size_t b = 0; b < model_.bodies.size(); ++b) add(static_cast<BodyId>(b), q);
@@ -128,7 +124,7 @@ class Drawing {
       if (const auto curve = curve_of(joint); curve && !curve->polar) continue;  // its piece goes by the scale
       for (const std::vector<Point>& line : outlines(joint)) all.insert(all.end(), line.begin(), line.end());
     }
-    auto [low, high] = ends_of(all);
+    auto [low, high] = svg::ends_of(all);
     largest_pitch_ = most_pitch * std::max(high.x - low.x, high.y - low.y);
     for (const JointElement& joint : model_.joints) {
       if (joint.gear < 0) continue;
@@ -141,7 +137,7 @@ class Drawing {
         all.push_back({at.x + radius, at.y + radius});
       }
     }
-    std::tie(low, high) = ends_of(all);
+    std::tie(low, high) = svg::ends_of(all);
     middle_ = 0.5 * (low + high);
     const Point size = high - low;
     const double largest = std::max({size.x, size.y, 1e-9});
@@ -156,8 +152,13 @@ class Drawing {
   std::vector<std::vector<Point>> outlines(const JointElement& joint) const {
     const Point a = world(marker(joint.marker_a)), b = world(marker(joint.marker_b));
     if (const auto belt = belt_of(joint)) return {belt_line(*belt, a, b)};
+    std::vector<std::vector<Point>> lines;
+    for (const JointShape& shape : JointShapes::of(model_, joint)) {
+      lines.emplace_back();
+      for (const Point& p : shape.points) lines.back().push_back(world(marker(shape.marker).body, p));
+    }
     const auto curve = curve_of(joint);
-    if (!curve) return {};
+    if (!curve) return lines;
     return curve_lines(*curve, a, angle_of(marker(joint.marker_a)), b, curve_reach * width / scale_);
   }
   void draw_outlines(const JointElement& joint, const char* kind) {
@@ -165,17 +166,6 @@ class Drawing {
       for (Point& p : line) p = page(p);
       draw_outline(out_, line, kind);
     }
-  }
-
-  /// Lower left and upper right.
-  static std::pair<Point, Point> ends_of(const std::vector<Point>& all) {
-    Point low{0.0, 0.0}, high{0.0, 0.0};
-    if (!all.empty()) low = high = all.front();
-    for (const Point& p : all) {
-      low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-      high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
-    return {low, high};
   }
 
   /// Wheels that turn, of a size that leaves the mechanism visible.
@@ -327,6 +317,8 @@ class Drawing {
         draw_outlines(joint, "belt");
       } else if (joint.layout.outlines.empty()) {
         out_.spring(from, to);
+      } else {
+        draw_outlines(joint, "outline");
       }
       out_.label(joint.name, 0.5 * (from + to), "font-style=\"italic\"");
     } else if (slides) {
@@ -400,14 +392,6 @@ class Drawing {
         "stroke=\"black\" stroke-width=\"1.5\"/>\n",
         px(to.x), px(to.y), px(-turn * 180.0 / 3.14159265358979323846));
     out_.block(to, 11.0);
-  }
-
-  void draw_shape(const JointShape& shape) {
-    std::vector<Point> points;
-    for (const Point& p : shape.points) points.push_back(page(world(marker(shape.marker).body, p)));
-    for (std::size_t i = 1; i < points.size(); ++i) out_.shun(points[i - 1], points[i]);
-    out_.shape("<path class=\"outline\" d=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"2\"/>\n",
-               svg::path(points));
   }
 
   void draw_force(const AppliedForce& force) {

@@ -20,6 +20,16 @@ constexpr const char* tints[] = {"#4477aa", "#cc6677", "#228833", "#ccbb44",
 
 double length(const Point& a) { return std::hypot(a.x, a.y); }
 
+std::pair<Point, Point> ends_of(const std::vector<Point>& points) {
+  Point low{0.0, 0.0}, high{0.0, 0.0};
+  if (!points.empty()) low = high = points.front();
+  for (const Point& p : points) {
+    low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+  }
+  return {low, high};
+}
+
 std::vector<Point> hull(std::vector<Point> points) {
   const auto before = [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); };
   std::ranges::sort(points, before);

@@ -25,6 +25,8 @@ struct Box {
   bool meets(const Box& o) const { return left < o.right && o.left < right && top < o.bottom && o.top < bottom; }
 };
 
+/// Least and largest x and y; the origin twice where there is no point.
+std::pair<Point, Point> ends_of(const std::vector<Point>& points);
 /// Convex hull, in one sense of turning; fewer than three points when all lie on a line.
 std::vector<Point> hull(std::vector<Point> points);
 /// "M x y L x y ..." through the points.
