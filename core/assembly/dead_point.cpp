@@ -18,8 +18,8 @@ constexpr double nearly_lost = 1e-2;  // the same for a run that ends close to o
 // The state of stress without load that is `here` and not beside it.
 std::vector<int> joints_in_line(const RowSvd& here, const RowSvd& beside, const ClosedMechanism::Rows& rows,
                                 const ClosedMechanism& mechanism) {
-  Eigen::VectorXd stress = here.svd.matrixU().col(beside.rank - 1);
-  const auto always = beside.svd.matrixU().rightCols(beside.svd.matrixU().cols() - beside.rank);
+  Eigen::VectorXd stress = here.svd.u.col(beside.rank - 1);
+  const auto always = beside.svd.u.rightCols(beside.svd.u.cols() - beside.rank);
   stress -= always * (always.transpose() * stress);
   return joints_under(stress, rows, mechanism);
 }
@@ -48,7 +48,7 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
   const ClosedMechanism::Rows rows = mechanism.position_rows();
   if (!mechanism.holds(rows)) return std::nullopt;
   const RowSvd here(rows);
-  const Eigen::VectorXd& values = here.svd.singularValues();
+  const Eigen::VectorXd& values = here.svd.sigma;
   if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > lost_rank * values[0]) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   const std::vector<ClosedMechanism::Lead> leads = mechanism.leads;
@@ -63,7 +63,7 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
       std::swap(mechanism.leads[i], mechanism.leads.back());
       const RowSvd there(mechanism.position_rows());
       const Eigen::Index last = there.rank - 1;
-      if (last < 0 || !(values[last] < lost_rank * there.svd.singularValues()[last])) continue;
+      if (last < 0 || !(values[last] < lost_rank * there.svd.sigma[last])) continue;
       return DeadStart{drivers[i], false, joints_in_line(here, there, rows, mechanism)};
     }
   }
@@ -71,7 +71,7 @@ std::optional<DeadStart> dead_start(const System& system, const State& start) {
   if (rows.matrix.rows() > values.size()) return std::nullopt;
   const auto moving = std::ranges::find_if(drivers, [&](int d) { return moves(model.drivers[at(d)]); });
   if (any_way || moving == drivers.end()) return std::nullopt;
-  return DeadStart{*moving, true, joints_under(here.svd.matrixU().rightCols<1>(), rows, mechanism)};
+  return DeadStart{*moving, true, joints_under(here.svd.u.rightCols<1>(), rows, mechanism)};
 }
 
 std::optional<SingularPosition> singular_position(const System& system, const State& now) {
@@ -85,7 +85,7 @@ std::optional<SingularPosition> singular_position(const System& system, const St
   // With play there are no rows to lose.
   if (rows.matrix.rows() == 0 || !mechanism.holds(rows)) return std::nullopt;
   const RowSvd here(rows);
-  const Eigen::VectorXd& values = here.svd.singularValues();
+  const Eigen::VectorXd& values = here.svd.sigma;
   if (rows.matrix.rows() <= values.size() && values[values.size() - 1] > nearly_lost * values[0]) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
@@ -100,7 +100,7 @@ std::optional<SingularPosition> singular_position(const System& system, const St
       const RowSvd there(mechanism.position_rows());
       const Eigen::Index last = there.rank - 1;
       if (last < 0) continue;
-      const double part = values[last] / there.svd.singularValues()[last];
+      const double part = values[last] / there.svd.sigma[last];
       if (!(part < nearly_lost)) continue;
       return SingularPosition{j, part, joints_in_line(here, there, rows, mechanism)};
     }

@@ -6,12 +6,13 @@
 #include <numbers>
 #include <vector>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "assembly/continuation.h"
 #include "assembly/start_branches.h"
 #include "base/index.h"
+#include "linear/row_solutions.h"
 
 namespace freeplay {
 namespace {
@@ -66,11 +67,10 @@ class Way {
   // Smallest pivot of the rows that are independent, by the largest that it had.
   double regularity() {
     const Eigen::MatrixXd columns = Eigen::MatrixXd(mechanism_.position_rows().matrix).transpose();
-    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-    const Eigen::VectorXd pivots = qr.matrixR().diagonal().cwiseAbs();
+    const Eigen::VectorXd sizes = pivots(columns);
     double smallest = infinite;
-    for (const double pivot : pivots) {
-      if (pivot > independent * pivots[0]) smallest = std::min(smallest, pivot);
+    for (const double pivot : sizes) {
+      if (pivot > independent * sizes[0]) smallest = std::min(smallest, pivot);
     }
     best_ = std::max(best_, smallest);
     return smallest / best_;

@@ -122,7 +122,7 @@ class FreeMotions {
     MatrixXd spins(rows.cols(), 0);
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       const int first = width * b + width - turns;
-      const MatrixXd own = kernel(rows.middleCols(first, turns));
+      const MatrixXd own = null_space(rows.middleCols(first, turns));
       if (rows.middleCols(first, turns).norm() <= rank_threshold) {
         spins.conservativeResize(Eigen::NoChange, spins.cols() + turns);
         spins.rightCols(turns).setZero();
@@ -138,7 +138,7 @@ class FreeMotions {
 
   /// Bodies that motions within the kernel of `rows` move; spins that nothing notices do not count.
   std::vector<int> moving_in(const MatrixXd& rows, const MatrixXd& spins, int* motions = nullptr) const {
-    MatrixXd free = kernel(rows);
+    MatrixXd free = null_space(rows);
     free -= spins * (spins.transpose() * free);
     if (motions != nullptr) *motions = static_cast<int>(free.cols() - spins.cols());  // spins are among the free ones
     const int width = closed_.layout().body_velocities();

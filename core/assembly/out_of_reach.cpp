@@ -231,7 +231,7 @@ class Reach {
     const ClosedMechanism::Rows rows = mechanism_.position_rows();
     const RowSvd ranks(rows);
     const auto lead = std::ranges::find(rows.lead, driven) - rows.lead.begin();
-    const auto dependent = ranks.svd.matrixU().rightCols(ranks.svd.matrixU().cols() - ranks.rank);
+    const auto dependent = ranks.svd.u.rightCols(ranks.svd.u.cols() - ranks.rank);
     std::vector<int> joints = joints_under(dependent * dependent.row(lead).transpose(), rows, mechanism_);
     std::erase(joints, driven);
     return joints.empty() ? "the mechanism holds"

@@ -12,9 +12,9 @@ constexpr double takes_part = 1e-3;  // share of a joint in the stress that its 
 
 }  // namespace
 
-RowSvd::RowSvd(const ClosedMechanism::Rows& rows) : svd(Eigen::MatrixXd(rows.matrix), Eigen::ComputeFullU) {
-  const Eigen::VectorXd& values = svd.singularValues();
-  while (rank < values.size() && values[rank] > full_rank * values[0]) ++rank;
+RowSvd::RowSvd(const ClosedMechanism::Rows& rows)
+    : svd(singular_values(Eigen::MatrixXd(rows.matrix), SingularVectors::full)) {
+  while (rank < svd.sigma.size() && svd.sigma[rank] > full_rank * svd.sigma[0]) ++rank;
 }
 
 std::vector<int> joints_under(const Eigen::VectorXd& stress, const ClosedMechanism::Rows& rows,

@@ -3,16 +3,17 @@
 
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "assembly/closed_mechanism.h"
+#include "linear/singular_values.h"
 
 namespace freeplay {
 
 /// Of the rows that hold and lead, by their singular values.
 struct RowSvd {
   explicit RowSvd(const ClosedMechanism::Rows& rows);
-  Eigen::BDCSVD<Eigen::MatrixXd> svd;
+  SingularValues svd;  ///< with all of U
   Eigen::Index rank = 0;
 };
 

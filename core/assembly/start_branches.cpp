@@ -4,12 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
+#include <Eigen/Core>
 
 #include "base/angle.h"
 #include "base/index.h"
+#include "linear/row_solutions.h"
 
 namespace freeplay {
 namespace {
@@ -86,18 +85,9 @@ void StartBranches::come_nearer() {
   for (int iteration = 0; iteration < 30; ++iteration) {
     const VectorXd misses = given_.misses(q);
     if (misses.lpNorm<Eigen::Infinity>() <= same_place) return;
-    const MatrixXd rows = mechanism_.position_rows().matrix;
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
-    held.setThreshold(1e-9);
-    held.compute(rows.transpose());
-    const Eigen::Index columns = rows.cols();
-    if (rows.rows() > 0 && held.rank() == columns) return;
-    MatrixXd free = MatrixXd::Identity(columns, columns);
-    if (rows.rows() > 0) free = (held.householderQ() * free).rightCols(columns - held.rank()).eval();
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> ways;
-    ways.setThreshold(1e-6);
-    ways.compute(given_.derivative(q) * free);
-    const VectorXd step = free * ways.solve(-misses);
+    const MatrixXd free = null_space(mechanism_.position_rows().matrix);
+    if (free.cols() == 0) return;
+    const VectorXd step = free * least_norm_solution(given_.derivative(q) * free, -misses, 1e-6);
     if (step.lpNorm<Eigen::Infinity>() <= 1e-9) return;
     const std::vector<double> before(q.begin(), q.end());
     bool better = false;
@@ -124,16 +114,7 @@ VectorXd StartBranches::slope(const MatrixXd& ways) const {
 void StartBranches::refine() {
   if (system_.layout().nv() > columns_for_some || !given_.any()) return;
   const std::span<double> q = mechanism_.state.q();
-  const auto motions = [&] {
-    const MatrixXd rows = mechanism_.position_rows().matrix;
-    const Eigen::Index columns = system_.layout().nv();
-    if (rows.rows() == 0) return MatrixXd(MatrixXd::Identity(columns, columns));
-    Eigen::CompleteOrthogonalDecomposition<MatrixXd> held;
-    held.setThreshold(1e-9);
-    held.compute(rows.transpose());
-    const MatrixXd all = held.householderQ() * MatrixXd::Identity(columns, columns);
-    return MatrixXd(all.rightCols(columns - held.rank()));
-  };
+  const auto motions = [&] { return null_space(mechanism_.position_rows().matrix); };
   for (int iteration = 0; iteration < 12; ++iteration) {
     const VectorXd misses = given_.misses(q);
     if (misses.lpNorm<Eigen::Infinity>() <= same_place) return;
@@ -156,10 +137,10 @@ void StartBranches::refine() {
     }
     std::ranges::copy(here, q.begin());
     if (!known) return;
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(0.5 * (curvature + curvature.transpose()));
-    const VectorXd bends = modes.eigenvalues().cwiseAbs().cwiseMax(1e-9 * modes.eigenvalues().cwiseAbs().maxCoeff());
-    const VectorXd along = modes.eigenvectors().transpose() * down;
-    VectorXd step = -(ways * (modes.eigenvectors() * along.cwiseQuotient(bends)));
+    const SymmetricModes modes = symmetric_modes(0.5 * (curvature + curvature.transpose()));
+    const VectorXd bends = modes.values.cwiseAbs().cwiseMax(1e-9 * modes.values.cwiseAbs().maxCoeff());
+    const VectorXd along = modes.vectors.transpose() * down;
+    VectorXd step = -(ways * (modes.vectors * along.cwiseQuotient(bends)));
     const double longest = scaled(system_, step).lpNorm<Eigen::Infinity>();
     if (!(longest > 1e-12)) return;
     step *= std::min(1.0, longest_turn / longest);
@@ -201,7 +182,7 @@ void StartBranches::approach(std::span<const double> start) {
         normal += g.transpose() * g;
         right -= g.transpose() * given_.misses(q);
       }
-      VectorXd step = normal.ldlt().solve(right);
+      VectorXd step = symmetric_solution(normal, right);
       const double longest = step.lpNorm<Eigen::Infinity>();
       if (!(longest > 1e-12)) break;
       step *= std::min(1.0, longest_turn / longest);

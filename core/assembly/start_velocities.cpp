@@ -253,8 +253,8 @@ class Velocities {
   // The part of the columns of `free` that speeds of `rows` determine.
   static MatrixXd free_by(const MatrixXd& rows, const MatrixXd& free) {
     if (rows.rows() == 0) return MatrixXd::Zero(free.rows(), free.cols());
-    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> seen(rows * free);
-    return free * seen.solve(rows * free);
+    const MatrixXd open = null_space(rows * free);
+    return free - free * open * open.transpose();
   }
 
   // Bodies that move though the file leaves their velocity open along `free`.

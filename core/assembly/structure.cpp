@@ -232,7 +232,7 @@ class Examination {
   /// A play in which no motion of the running model can move its pin.
   void judge_plays(const MatrixXd& open) {
     if (model_.clearance_joints() == 0) return;
-    const MatrixXd free = kernel(open);
+    const MatrixXd free = null_space(open);
     const MatrixXd shut = constraint_matrix(closed_.jacobian(), shut_);
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (!model_.joints[at(j)].has_play || std::ranges::count(bypassed_, j) > 0) continue;
@@ -246,7 +246,7 @@ class Examination {
 
   /// Joints that take part in a state of stress without load.
   void find_undetermined(const MatrixXd& open) {
-    const MatrixXd stresses = kernel(open.transpose());
+    const MatrixXd stresses = null_space(open.transpose());
     if (stresses.cols() == 0) return;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice slice = released_.layout().rows(j);
@@ -260,7 +260,7 @@ class Examination {
   void judge_locked(const MatrixXd& open) {
     const bool held = std::ranges::any_of(model_.drivers, [](const Driver& driver) { return prescribes(driver.kind); });
     if (held || model_.drivers.empty()) return;
-    const MatrixXd free = kernel(open);
+    const MatrixXd free = null_space(open);
     const int width = released_.layout().body_velocities();
     const auto moves = [&](BodyId b) {
       return b != ground && free.cols() > 0 && free.middleRows(width * b, width).norm() > counts_as_motion;

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Core>
 
 #include "assembly/continuation.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
+#include "linear/row_solutions.h"
 
 namespace freeplay {
 namespace {
@@ -44,11 +45,11 @@ class Balance {
       if (!forces_at(by * free.col(i), ahead) || !forces_at(-by * free.col(i), back)) return std::nullopt;
       stiffness.col(i) = free.transpose() * (ahead - back) / (2.0 * by);
     }
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> modes(0.5 * (stiffness + stiffness.transpose()));
+    const SymmetricModes modes = symmetric_modes(0.5 * (stiffness + stiffness.transpose()));
     const Eigen::Index last = free.cols() - 1;
-    const double growth = std::sqrt(std::max(0.0, modes.eigenvalues()[last]));
+    const double growth = std::sqrt(std::max(0.0, modes.values[last]));
     if (!(growth * (model_.settings.end - model_.settings.start) > least_growth)) return std::nullopt;
-    return UnstableStart{most_moved(free * modes.eigenvectors().col(last)), growth};
+    return UnstableStart{most_moved(free * modes.vectors.col(last)), growth};
   }
 
  private:
@@ -58,7 +59,7 @@ class Balance {
   MatrixXd motions() {
     MatrixXd rows = constraint_matrix(mechanism_.system.jacobian(), mechanism_.e);
     rows.array().rowwise() /= root_mass_.transpose().array();
-    return kernel(rows);
+    return null_space(rows);
   }
   /// What acts, by the roots of masses.
   VectorXd loads() const {

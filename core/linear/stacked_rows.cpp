@@ -1,6 +1,6 @@
 #include "linear/stacked_rows.h"
 
-#include <Eigen/QR>
+#include "linear/row_solutions.h"
 
 namespace freeplay {
 void StackedRows::add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double least) {
@@ -9,15 +9,8 @@ void StackedRows::add(const Eigen::MatrixXd& a, const Eigen::VectorXd& b, double
   const double largest = reduced.cwiseAbs().maxCoeff(), floor = least * a.cwiseAbs().maxCoeff();
   if (largest <= floor) return;
   const double smallest_pivot = least > rounding ? floor / largest : rounding;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> rows;
-  rows.setThreshold(smallest_pivot);
-  rows.compute(reduced);
-  x_ += free_ * rows.solve(b - a * x_);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> columns;
-  columns.setThreshold(smallest_pivot);
-  columns.compute(reduced.transpose());
-  const Eigen::MatrixXd q = columns.householderQ() * Eigen::MatrixXd::Identity(free_.cols(), free_.cols());
-  free_ = (free_ * q.rightCols(free_.cols() - columns.rank())).eval();
+  x_ += free_ * least_norm_solution(reduced, b - a * x_, smallest_pivot);
+  free_ = (free_ * null_space(reduced, smallest_pivot)).eval();
 }
 
 }  // namespace freeplay
