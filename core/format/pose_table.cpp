@@ -70,6 +70,7 @@ class PoseReader {
                                nearest_word.value_or(""));
       good = false;
     }
+    if (!good) return false;
     const auto parts =
         std::count_if(places_.begin() + 3, places_.end(), [](const auto& place) { return place.has_value(); });
     for (std::size_t i = 3; i < words_.size() && parts > 0; ++i) {

@@ -217,11 +217,28 @@ void RunFailure::explain_dead_point() {
   }
 }
 
+// Before a path leaves what the mechanism reaches, its inputs turn faster and faster, and no step is short enough.
+bool RunFailure::explain_end_of_path() {
+  if (run_.model.kinematics.empty()) return false;
+  std::vector<TimeValue> values(run_.model.drivers.size());
+  const double whole = run_.model.settings.end - run_.model.settings.start;
+  for (const double part : {1e-9, 1e-6, 1e-4, 1e-3}) {
+    Fault fault;
+    fault.kind = Fault::Kind::motion;
+    const double t = run_.accepted.t() + part * whole;
+    if (run_.system.motions().evaluate(t, {values.data(), values.size()}, run_.motion_work, fault.motion)) continue;
+    if (std::string_view(fault.motion.id) == "ik-unreachable") fail_with(fault, t);
+    return run_.outcome.reason.ends_with("[ik-unreachable]");
+  }
+  return false;
+}
+
 // Where constraints have lost rank no step is short enough.
 void RunFailure::explain_singular_position() {
   const auto advises = [&](std::string_view advice) { return run_.outcome.reason.ends_with(advice); };
   const bool grew = run_.model.clearance_joints() == 0 && (advises(advice::jump) || advises(advice::accuracy));
   if (!grew && !advises(advice::smaller_step) && !advises(advice::error)) return;
+  if (explain_end_of_path()) return;
   std::optional<SingularPosition> position;
   try {
     position = singular_position(run_.system, run_.accepted);

@@ -48,6 +48,7 @@ class RunFailure {
   void explain_failure();
 
  private:
+  bool explain_end_of_path();
   void explain_singular_position();
   std::string why_beyond_bounds(double t, int joint) const;
   int hardest_joint(BodyId body) const;

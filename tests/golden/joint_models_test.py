@@ -31,7 +31,7 @@ simulation: {end: 0.5 s, output: {interval: 5 ms}, %s}
 
     def test_what_acts_out_of_the_plane_is_refused_in_it(self):
         for key in ("z", "turn_x"):
-            errors = self.refusal(self.TEXT % (0, 0, key, ""), line=6)
+            errors = self.refusal(self.TEXT % (0, 0, key, ""), line=7)
             self.assertIn("in the plane", str(errors))
 
 

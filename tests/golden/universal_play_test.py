@@ -157,9 +157,9 @@ class UniversalWithPlay(ModelTest):
         driven = universal(more="drivers: {turn: {joint: U, kind: angle, value: \"5*t\"}}\n", moves="")
         for text in (driven, driven.replace("drivers", "initial").replace("{turn: {joint: U, kind: angle, value: \"5*t\"}}", "{joints: {U: 1}}")):
             errors = self.refusal(text, id="unknown-name", line=9)
-            self.assertIn("name 'U.first' or 'U.second', or write 'coordinate: first'", errors[0]["hint"])
+            self.assertIn("name 'U.first' or 'U.second', or write 'coordinate: first'", errors[0]["suggestion"])
         ideal = ARM % (LENGTH, "", "", "  U: {type: universal, between: [ground, arm]}\n", "drivers: {turn: {joint: U, kind: angle, value: 1}}\n", "1 s", "step: 1 ms")
-        self.assertIn("'coordinate: first' or 'coordinate: second'", self.refusal(ideal, id="wrong-type", line=9)[0]["hint"])
+        self.assertIn("'coordinate: first' or 'coordinate: second'", self.refusal(ideal, id="wrong-type", line=9)[0]["suggestion"])
         deep = self.facts(universal(block(rest=", initial: {eccentricity: [0, 0, 1 mm]}")))["messages"]
         self.assertEqual([("doubtful-clearance", 8)] * 2, [(message["id"], message["line"]) for message in deep])
 
