@@ -75,14 +75,8 @@ class SlotContact final : public BoundaryContact<PinAtSlot> {
 
  private:
   static PinAtSlot read(const Parameters& p) {
-    const double radius = p.number("pin_radius"), play = 0.5 * p.number("width") - radius;
-    if (!(play > 0.0))
-      throw BadParameter("width", "out-of-range",
-                         "the pin does not go into the slot: 'width' must be more than twice 'pin_radius'");
-    const double bottom = p.number("bottom"), mouth = p.number("mouth");
-    if (!(bottom < mouth))
-      throw BadParameter("mouth", "out-of-range", "'mouth' must lie beyond 'bottom', along x of the first frame");
-    return {radius, play, bottom, mouth};
+    const double bottom = p.number("bottom");
+    return {p.number("pin_radius"), p.number("gap"), bottom, bottom + p.number("length")};
   }
   SlotContact(const Parameters& p, const PinAtSlot& slot)
       : BoundaryContact(slot, boundary_laws(p, slot.play), outlines_of(slot)) {}
@@ -97,15 +91,13 @@ class SlotContact final : public BoundaryContact<PinAtSlot> {
   }
 };
 
-constexpr Parameter place_row(const char* name, const char* summary) {
-  return {.name = name, .unit = "m", .summary = summary};
-}
-constexpr Parameter own_rows[] = {boundary_length("width", "Distance of the walls of the slot."),
-                                  boundary_length("pin_radius", "Radius of the pin about the second frame."),
-                                  place_row("bottom",
-                                            "Where the straight part ends at a round bottom, along x of the "
-                                            "first frame."),
-                                  place_row("mouth", "Where the slot is open, along x of the first frame.")};
+constexpr Parameter own_rows[] = {
+    boundary_length("pin_radius", "Radius of the pin about the second frame."),
+    boundary_length("gap", "Play to each side: half of the slot's width minus the pin's radius."),
+    {.name = "bottom",
+     .unit = "m",
+     .summary = "Where the straight part of the slot begins, at a round bottom, along x of the first frame."},
+    boundary_length("length", "Of the straight part, from the bottom to the mouth, where the slot is open.")};
 constexpr auto slot_contact_parameters = joined(own_rows, boundary_law_rows);
 
 }  // namespace
@@ -118,7 +110,7 @@ Component slot_contact() {
            "Force element: a round pin touches the walls, the bottom and the edges of a slot that is open at one "
            "end, by a contact law; it may leave the slot.",
        .formula =
-           "in the slot e = (x - bottom where that is negative, y), m = e/|e|, delta = |e| - (width/2 - pin_radius); "
+           "in the slot e = (x - bottom where that is negative, y), m = e/|e|, delta = |e| - gap; "
            "before its mouth m towards the nearer edge, delta = pin_radius - distance of the edge; force on the pin "
            "-F_N m + F_T t, t = m turned by +90 deg, at its surface for delta > 0.",
        .validity = "The body of the slot is its two walls and their edges: what else it has is not touched.",

@@ -1,7 +1,6 @@
 #include "cli/run_command.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -143,9 +142,7 @@ class RunJob {
 
   std::span<Sink* const> all_sinks() {
     if (options_.verify) sinks_.push_back(&rows_.emplace(channels_));
-    if (options_.twin_pipe >= 0) {
-      sinks_.push_back(&twin_rows_.emplace(options_.twin_pipe, *loaded_.model, channels_));
-    }
+    if (options_.twin_pipe >= 0) sinks_.push_back(&twin_rows_.emplace(options_.twin_pipe, *loaded_.model, channels_));
     if (twin_ != nullptr) sinks_.push_back(&twin_->start(*loaded_.model, channels_));
     return sinks_;
   }
@@ -190,10 +187,9 @@ class RunJob {
     std::atomic<int> stop{0};
     hooks.interrupt = &stop;
     hooks.stepped = [&] {
-      const bool interrupted = interrupt != 0;
       if (repeats_ != nullptr) repeats_->look_after();
-      if (interrupted || checkpoints_.due()) checkpoints_.add(simulation_->save());
-      if (interrupted) stop = 1;
+      if (interrupt != 0) stop = 1;
+      if (interrupt != 0 || checkpoints_.due()) checkpoints_.add(simulation_->save());
     };
     if (options_.profile) hooks.profile = &profile_;
     hooks.progress = [&](double t, long steps) {
