@@ -121,10 +121,10 @@ constexpr Parameter angle_row(const char* name, const char* summary) {
   return {.name = name, .unit = "rad", .default_value = optional, .summary = summary};
 }
 constexpr Parameter own_rows[] = {
-    boundary_length("disc", "Radius of the disc about the second frame."),
     boundary_length("arc.radius", "Radius of the arc about the first frame."),
     angle_row("arc.from", "Where it begins, from the x axis of the frame; without both it is the whole circle."),
-    angle_row("arc.to", "Where it ends, counter-clockwise.")};
+    angle_row("arc.to", "Where it ends, counter-clockwise."),
+    boundary_length("disc", "Radius of the disc about the second frame.")};
 constexpr auto arc_contact_parameters = joined(own_rows, boundary_law_rows);
 
 }  // namespace

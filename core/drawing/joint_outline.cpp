@@ -28,24 +28,24 @@ void add_arc(std::vector<Point>& to, const Point& middle, const Point& u, double
 
 }  // namespace
 
-std::optional<BeltShape> belt_of(const JointElement& joint) {
+std::optional<StrandShape> strands_of(const JointElement& joint) {
   const ParameterValue *first = value_of(joint, "first_radius"), *second = value_of(joint, "second_radius"),
                        *strands = value_of(joint, "strands");
   if (joint.has_play || first == nullptr || second == nullptr || strands == nullptr) return std::nullopt;
-  return BeltShape{first->number, second->number, strands->word == 1};
+  return StrandShape{first->number, second->number, strands->word == 1};
 }
 
 // The normals of both strands stand at the angle theta to both sides of the line of centres u.
-std::vector<Point> belt_line(const BeltShape& belt, const Point& first, const Point& second) {
-  const double apart = length(second - first), sense = belt.crossed ? -1.0 : 1.0;
-  const double across = belt.second - sense * belt.first;
+std::vector<Point> strand_line(const StrandShape& strands, const Point& first, const Point& second) {
+  const double apart = length(second - first), sense = strands.crossed ? -1.0 : 1.0;
+  const double across = strands.second - sense * strands.first;
   if (!(apart > std::abs(across))) return {};
   const Point u = (1.0 / apart) * (second - first);
   const double theta = std::acos(-sense * across / apart);
-  const double at_second = belt.crossed ? theta - std::numbers::pi : theta;
+  const double at_second = strands.crossed ? theta - std::numbers::pi : theta;
   std::vector<Point> line;
-  add_arc(line, first, u, belt.first, theta, whole_turn - theta);
-  add_arc(line, second, u, belt.second, -at_second, at_second);
+  add_arc(line, first, u, strands.first, theta, whole_turn - theta);
+  add_arc(line, second, u, strands.second, -at_second, at_second);
   line.push_back(line.front());
   return line;
 }

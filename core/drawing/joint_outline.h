@@ -10,15 +10,15 @@
 namespace freeplay {
 
 /// Of a force element between two pulleys, whose radii are among its parameters.
-struct BeltShape {
+struct StrandShape {
   double first, second;  ///< radii [m]
   bool crossed;
 };
-std::optional<BeltShape> belt_of(const JointElement& joint);
+std::optional<StrandShape> strands_of(const JointElement& joint);
 
-/// The closed way of the belt [m]: about the first pulley, along the right strand as seen from it to the second, about
-/// the second and back. Empty where the pulleys are closer than their belt allows.
-std::vector<svg::Point> belt_line(const BeltShape& belt, const svg::Point& first, const svg::Point& second);
+/// The closed way of both [m]: about the first pulley, along the right strand as seen from it to the second, about the
+/// second and back. Empty where the pulleys are closer than that allows.
+std::vector<svg::Point> strand_line(const StrandShape& strands, const svg::Point& first, const svg::Point& second);
 
 /// Of a joint with a curve of one variable among its parameters: a height over x of its first frame, or a distance from
 /// its origin over the angle.

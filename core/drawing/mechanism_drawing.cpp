@@ -148,10 +148,10 @@ class Drawing {
     height_ = std::max(least_height, scale_ * size.y + 2 * margin);
   }
 
-  /// Where a belt or a curve goes [m]; one that is not closed as far as a part of the picture.
+  /// Where strands or a curve go [m]; one that is not closed as far as a part of the picture.
   std::vector<std::vector<Point>> outlines(const JointElement& joint) const {
     const Point a = world(marker(joint.marker_a)), b = world(marker(joint.marker_b));
-    if (const auto belt = belt_of(joint)) return {belt_line(*belt, a, b)};
+    if (const auto strands = strands_of(joint)) return {strand_line(*strands, a, b)};
     std::vector<std::vector<Point>> lines;
     for (const JointShape& shape : JointShapes::of(model_, joint)) {
       lines.emplace_back();
@@ -313,8 +313,8 @@ class Drawing {
       if (const auto stops = stops_of(joint)) {
         const double turn = angle_of(a);
         draw_stops(out_, *stops, from, {std::cos(turn), -std::sin(turn)}, {-std::sin(turn), -std::cos(turn)}, scale_);
-      } else if (belt_of(joint)) {
-        draw_outlines(joint, "belt");
+      } else if (strands_of(joint)) {
+        draw_outlines(joint, "strands");
       } else if (joint.layout.outlines.empty()) {
         out_.spring(from, to);
       } else {

@@ -37,7 +37,7 @@ struct MechanismPicture {
 /// SVG of a model with its bodies where `q` puts them; spatial models as `spatial_svg` says. In the plane: bodies as
 /// shaded outlines through their points, ground hatched, joints as symbols of what they leave free (circle: a turn,
 /// ring: a turn with clearance, box: a slide, square: nothing, line: what ties two points apart, zigzag: a force,
-/// bars: stops at the ends of a way), belts, cams and grooves to scale,
+/// bars: stops at the ends of a way), strands about wheels, cams and grooves to scale,
 /// gears as pitch circles, bodies that do not stand where the file gives their pose once more, pale and dashed, where
 /// it does; at other instants as pale outlines;
 /// centres of mass as quartered discs, frames that no joint stands on as small axes; all with their names,

@@ -1,5 +1,7 @@
 #include "format/joint_section.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "base/name_pattern.h"
@@ -317,7 +319,8 @@ std::string coordinate_hint(const Component& type) {
   for (const Parameter& parameter : type.description.parameters) {
     if (parameter.kind != ParameterKind::choice || std::string_view(parameter.name) != "coordinate") continue;
     std::vector<std::string> keys = words_of(parameter);
-    std::erase(keys, "none");
+    // The default leaves the type without one.
+    if (std::isfinite(parameter.default_value)) keys.erase(keys.begin() + std::lround(parameter.default_value));
     for (std::string& word : keys) word = "'coordinate: " + word + "'";
     return "write " + either(keys) + " at the joint";
   }

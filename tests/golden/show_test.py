@@ -302,7 +302,7 @@ forces:
 """
         for strands, sense in (("open", 1), ("crossed", -1)):
             out, _ = self.freeplay("show", self.write("m.yaml", model % strands), "--format", "svg")
-            line, = map(self.points, self.kind(xml.fromstring(out), "path", "belt"))
+            line, = map(self.points, self.kind(xml.fromstring(out), "path", "strands"))
             # All of it lies between circles and tangents: its length is that of the textbook.
             scale = (max(x for x, y in line) - min(x for x, y in line)) / 0.45
             length = sum(math.dist(p, q) for p, q in zip(line, line[1:])) / scale

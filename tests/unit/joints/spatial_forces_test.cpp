@@ -4,7 +4,7 @@ namespace freeplay::test {
 namespace {
 
 SpatialForce bushing(double damping) {
-  const Component& row = joint_row("bushing");
+  static const Component row = in_space(joint_row("bushing"));
   ParameterStub stub(row);
   const char* names[] = {"x", "y", "z", "turn_x", "turn_y", "turn_z"};
   const double sizes[] = {1e3, 2e3, 5e3, 10.0, 30.0, 70.0};
