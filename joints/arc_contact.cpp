@@ -78,13 +78,14 @@ struct DiscAtArc {
   }
 };
 
-constexpr auto channels = boundary_channels({"distance", "m"}, {"direction", "rad"});
+constexpr auto disc_channels = boundary_channels({"distance", "m"}, {"direction", "rad"});
 
 class ArcContact final : public BoundaryContact<DiscAtArc> {
  public:
   explicit ArcContact(const Parameters& p) : ArcContact(p, read(p)) {}
   void declare(JointLayout& layout) const override {
-    declare_boundary(layout, {channels.data(), channels.size()}, std::min(geometry().radius, geometry().disc));
+    declare_boundary(layout, {disc_channels.data(), disc_channels.size()},
+                     std::min(geometry().radius, geometry().disc));
   }
 
  private:
@@ -120,12 +121,12 @@ class ArcContact final : public BoundaryContact<DiscAtArc> {
 constexpr Parameter angle_row(const char* name, const char* summary) {
   return {.name = name, .unit = "rad", .default_value = optional, .summary = summary};
 }
-constexpr Parameter own_rows[] = {
+constexpr Parameter disc_rows[] = {
     boundary_length("arc.radius", "Radius of the arc about the first frame."),
     angle_row("arc.from", "Where it begins, from the x axis of the frame; without both it is the whole circle."),
     angle_row("arc.to", "Where it ends, counter-clockwise."),
     boundary_length("disc", "Radius of the disc about the second frame.")};
-constexpr auto arc_contact_parameters = joined(own_rows, boundary_law_rows);
+constexpr auto arc_contact_parameters = joined(disc_rows, boundary_law_rows);
 
 }  // namespace
 

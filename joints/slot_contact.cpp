@@ -63,14 +63,14 @@ struct PinAtSlot {
   }
 };
 
-constexpr auto channels = boundary_channels({"along", "m"}, {"across", "m"});
+constexpr auto mouth_channels = boundary_channels({"along", "m"}, {"across", "m"});
 
 /// A pin that enters a slot of another body, drives it, and leaves it again, as that of a Geneva drive.
 class SlotContact final : public BoundaryContact<PinAtSlot> {
  public:
   explicit SlotContact(const Parameters& p) : SlotContact(p, read(p)) {}
   void declare(JointLayout& layout) const override {
-    declare_boundary(layout, {channels.data(), channels.size()}, geometry().radius);
+    declare_boundary(layout, {mouth_channels.data(), mouth_channels.size()}, geometry().radius);
   }
 
  private:
@@ -91,14 +91,14 @@ class SlotContact final : public BoundaryContact<PinAtSlot> {
   }
 };
 
-constexpr Parameter own_rows[] = {
+constexpr Parameter mouth_rows[] = {
     boundary_length("pin_radius", "Radius of the pin about the second frame."),
     boundary_length("gap", "Play to each side: half of the slot's width minus the pin's radius."),
     {.name = "bottom",
      .unit = "m",
      .summary = "Where the straight part of the slot begins, at a round bottom, along x of the first frame."},
     boundary_length("length", "Of the straight part, from the bottom to the mouth, where the slot is open.")};
-constexpr auto slot_contact_parameters = joined(own_rows, boundary_law_rows);
+constexpr auto slot_contact_parameters = joined(mouth_rows, boundary_law_rows);
 
 }  // namespace
 
