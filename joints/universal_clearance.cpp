@@ -38,12 +38,12 @@ constexpr Parameter cross_rows[] = {
 constexpr auto universal_clearance_parameters =
     play::joined(play::radius_rows, bearing_length_rows, play::law_rows, play::start_rows, cross_rows);
 
-constexpr JointChain cross{.first = {"first", "revolute-clearance", {1.0, 0.0, 0.0}},
-                           .second = {"second", "revolute-clearance", {0.0, 1.0, 0.0}},
-                           .body = "cross",
-                           .mass = "clearance.cross.mass",
-                           .inertia = "clearance.cross.inertia",
-                           .coordinate = "coordinate"};
+constexpr JointChain cross_chain{.first = {"first", "revolute-clearance", {1.0, 0.0, 0.0}},
+                                 .second = {"second", "revolute-clearance", {0.0, 1.0, 0.0}},
+                                 .body = "cross",
+                                 .mass = "clearance.cross.mass",
+                                 .inertia = "clearance.cross.inertia",
+                                 .coordinate = "coordinate"};
 
 }  // namespace
 
@@ -60,7 +60,7 @@ Component universal_clearance() {
        .parameters = {universal_clearance_parameters.data(), universal_clearance_parameters.size()},
        .ideal = "universal",
        .block = "clearance",
-       .chain = &cross});
+       .chain = &cross_chain});
 }
 
 }  // namespace freeplay
