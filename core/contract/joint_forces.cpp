@@ -203,9 +203,7 @@ class DerivativeCheck {
       if (r < 12 && !moves(r)) continue;
       const double given = given_[r * width + c];
       // A derivative that a joint finds by differences itself may be off by 1e-8 of the force, where it should be zero.
-      double scale = std::max(10.0 * size[group(r)], 1e-2 * given_size_[group(r)]);
-      // Of a force through both origins rounding leaves a moment, as by a lever shorter than any.
-      if (group(r) == 1) scale = std::max(scale, shortest_lever * size[0]);
+      const double scale = std::max(10.0 * size[group(r)], 1e-2 * given_size_[group(r)]);
       findings_.expect("derivatives", agrees(given, d.value[r], d.error[r], scale), [&] {
         return fmt::format("{} by {} (row {}, column {}) is {:.9g}, differences give {:.9g}, {}", force_word(r),
                            input_word(c), r, c, given, d.value[r], words_of(moment_));
@@ -218,8 +216,6 @@ class DerivativeCheck {
     const std::vector<std::size_t> kept = moving_components(probe_.space());
     return std::find(kept.begin(), kept.end(), row) != kept.end();
   }
-
-  static constexpr double shortest_lever = 1e-12;  // [m]
 
   const JointProbe& probe_;
   const JointMoment& moment_;
