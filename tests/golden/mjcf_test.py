@@ -1,30 +1,14 @@
 """MJCF files: loops, trees and geoms against twins, integrals and equations of their own; messages; side-cars."""
-import csv
 import json
 import math
 import os
 import random
 import unittest
 
-from program import ProgramTest
+from robot_twins import TwinTest
 
 
-class MjcfTest(ProgramTest):
-    def columns(self, model, *options):
-        """Results of a run: column names to numbers."""
-        out = model + ".out"
-        self.freeplay("run", model, "--out", out, "--quiet", *options)
-        rows = list(csv.reader(self.read(out, "results.csv").splitlines()))
-        return {name: [float(x) for x in values] for name, *values in zip(*rows)}
-
-    def assert_same_motion(self, expected, actual, tolerance=1e-10):
-        names = [name for name in expected if name.startswith("body.")]
-        self.assertTrue(names)
-        for name in names:
-            for x, y in zip(expected[name], actual[name], strict=True):
-                gap = math.remainder(x - y, 2 * math.pi) if name.endswith(".angle") else x - y
-                self.assertLess(abs(gap), tolerance * max(1.0, abs(x)), name)
-
+class MjcfTest(TwinTest):
     def model(self, text, name="r.xml"):
         """The model that a file stands for, as `show` writes it."""
         out, _ = self.freeplay("show", self.write(name, text), "--format", "json")

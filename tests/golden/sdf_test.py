@@ -1,29 +1,15 @@
 """SDFormat files: loops, frames, gears and screws against twins and equations of their own; messages; side-cars."""
-import csv
 import json
 import math
 import os
 import random
 import unittest
 
-from program import ProgramTest
+from robot_twins import TwinTest, closed_four_bar
 
 
-class SdfTest(ProgramTest):
-    def columns(self, model, *options):
-        """Results of a run: column names to numbers."""
-        out = model + ".out"
-        self.freeplay("run", model, "--out", out, "--quiet", *options)
-        rows = list(csv.reader(self.read(out, "results.csv").splitlines()))
-        return {name: [float(x) for x in values] for name, *values in zip(*rows)}
-
-    def assert_same_motion(self, expected, actual, tolerance=1e-9):
-        names = [name for name in expected if name.startswith("body.")]
-        self.assertTrue(names)
-        for name in names:
-            for x, y in zip(expected[name], actual[name], strict=True):
-                gap = math.remainder(x - y, 2 * math.pi) if name.endswith(".angle") else x - y
-                self.assertLess(abs(gap), tolerance * max(1.0, abs(x)), name)
+class SdfTest(TwinTest):
+    tolerance = 1e-9
 
     def model(self, text, name="r.sdf"):
         """The model that a file stands for, as `show` writes it."""
@@ -56,18 +42,8 @@ def joint(name, kind, parent, child, axis="0 0 1", rest="", inside=""):
         name, kind, parent, child, axis, rest)
 
 
-def four_bar_angles():
-    """Angles of crank, coupler and rocker: two circles about the crank's tip and the far pin."""
-    a = math.radians(60)
-    x, y = 0.4 - 0.1 * math.cos(a), -0.1 * math.sin(a)
-    gap = math.hypot(x, y)
-    coupler = math.atan2(y, x) + math.acos((0.3 ** 2 + gap ** 2 - 0.25 ** 2) / (2 * 0.3 * gap))
-    tip = (0.1 * math.cos(a) + 0.3 * math.cos(coupler), 0.1 * math.sin(a) + 0.3 * math.sin(coupler))
-    return a, coupler, math.atan2(tip[1], tip[0] - 0.4)
-
-
 def four_bar(joints=None):
-    a, b, c = four_bar_angles()
+    a, b, c = closed_four_bar()
     links = (link("crank", "0 0 0 0 0 %r" % a, 0.5, "0.05 0 0 0 0 0", (1, 1, 0.001))
              + link("coupler", '<pose relative_to="crank">0.1 0 0 0 0 %r</pose>' % (b - a), 1.5, "0.15 0 0 0 0 0", (1, 1, 0.02))
              + link("rocker", "0.4 0 0 0 0 %r" % c, 1.2, "0.125 0 0 0 0 0", (1, 1, 0.01)))
@@ -80,7 +56,7 @@ def four_bar(joints=None):
 
 
 def four_bar_twin():
-    a, b, c = four_bar_angles()
+    a, b, c = closed_four_bar()
     return """freeplay: 1
 gravity: [0, -9.81]
 bodies:

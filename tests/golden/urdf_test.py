@@ -8,6 +8,7 @@ import subprocess
 import unittest
 
 from program import PROGRAM, ROOT, ProgramTest
+from robot_twins import closed_four_bar
 
 DATA = os.path.join(ROOT, "tests", "data", "urdf")
 
@@ -82,16 +83,6 @@ def knee_angles():
     height = math.sqrt(0.25 ** 2 - half ** 2)
     tip = (knees[0][0] + dx / 2 - dy / (2 * half) * height, knees[0][1] + dy / 2 + dx / (2 * half) * height)
     return a, b, [math.atan2(tip[1] - y, tip[0] - x) for x, y in knees]
-
-
-def closed_four_bar():
-    """Angles of crank, coupler and rocker of four_bar_twin.yaml: two circles about the crank's tip and the far pin."""
-    a = math.radians(60)
-    x, y = 0.4 - 0.1 * math.cos(a), -0.1 * math.sin(a)
-    gap = math.hypot(x, y)
-    coupler = math.atan2(y, x) + math.acos((0.3 ** 2 + gap ** 2 - 0.25 ** 2) / (2 * 0.3 * gap))
-    tip = (0.1 * math.cos(a) + 0.3 * math.cos(coupler), 0.1 * math.sin(a) + 0.3 * math.sin(coupler))
-    return a, coupler, math.atan2(tip[1], tip[0] - 0.4)
 
 
 def five_bar(dialect):
