@@ -131,6 +131,14 @@ class Delta(PathTest):
 class Stewart(PathTest):
     JOINTS = "leg*.guide"
 
+    def assert_pose(self, columns, pose):
+        for i, name in enumerate("xyz"):
+            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[0][i], 1e-9)
+        for i, name in enumerate(("qw", "qx", "qy", "qz")):
+            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[1][i], 1e-9)
+        self.assert_legs(columns, pose)
+        self.assert_no_error(columns)
+
     def assert_legs(self, columns, pose):
         """Each leg is as long as from its foot to its ball, at the pose of the platform."""
         for leg in range(1, 7):
@@ -154,12 +162,7 @@ class Stewart(PathTest):
             q = (cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr)
             return (0.04 * math.sin(OMEGA * t), 0.02 * t, 0.5 + 0.05 * t), q
 
-        for i, name in enumerate("xyz"):
-            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[0][i], 1e-9)
-        for i, name in enumerate(("qw", "qx", "qy", "qz")):
-            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[1][i], 1e-9)
-        self.assert_legs(columns, pose)
-        self.assert_no_error(columns)
+        self.assert_pose(columns, pose)
 
     NAMES = ["x", "y", "z", "qw", "qx", "qy", "qz"]
     TIMES = [0.05 * i for i in range(11)]
@@ -184,12 +187,7 @@ class Stewart(PathTest):
         self.write_poses(self.NAMES, self.poses(lambda i: (1, 1, -1, -1, 1)[i % 5]))
         columns = self.run_text(shipped("stewart", "poses.csv", self.JOINTS), "--ideal", "all")
         pose = self.spline_pose(self.poses())
-        for i, name in enumerate("xyz"):
-            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[0][i], 1e-9)
-        for i, name in enumerate(("qw", "qx", "qy", "qz")):
-            self.assert_column(columns, "body.platform." + name, lambda t: pose(t)[1][i], 1e-9)
-        self.assert_legs(columns, pose)
-        self.assert_no_error(columns)
+        self.assert_pose(columns, pose)
         # Angular speed against a difference of the orientations, in axes of the world.
         step = 1e-5
         for k in (7, 23, 41):
