@@ -8,6 +8,7 @@
 #include "base/angle.h"
 #include "base/index.h"
 #include "model/rotation.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -5,6 +5,7 @@
 
 #include "base/index.h"
 #include "linear/singular_values.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "assembly/gear_turns.h"
+#include "linear/sparse_matrix.h"
 #include "system/path_row.h"
 #include "system/system.h"
 

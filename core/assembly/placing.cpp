@@ -7,6 +7,7 @@
 
 #include "base/angle.h"
 #include "base/index.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "system/spatial_kinematics.h"
+
 namespace freeplay {
 namespace {
 

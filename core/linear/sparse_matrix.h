@@ -5,17 +5,13 @@
 
 #include <Eigen/SparseCore>
 
+#include "linear/sparse_entry.h"
+
 namespace freeplay {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
-/// Entries at one place are added.
-using SparseEntry = Eigen::Triplet<double>;
 
-inline SparseMatrix sparse_matrix(Eigen::Index rows, Eigen::Index columns, const std::vector<SparseEntry>& entries) {
-  SparseMatrix matrix(rows, columns);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  return matrix;
-}
+SparseMatrix sparse_matrix(Eigen::Index rows, Eigen::Index columns, const std::vector<SparseEntry>& entries);
 
 /// Beyond so many columns decompositions are sparse: dense ones are surer of a rank, and cost the cube of the size.
 inline constexpr Eigen::Index most_dense_columns = 600;

@@ -6,6 +6,7 @@
 
 #include "base/index.h"
 #include "system/evaluation.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "base/index.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "model/model.h"
-#include "system/spatial_kinematics.h"
+#include "system/spatial_bodies.h"
 
 namespace freeplay {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "system/planar_kinematics.h"
-#include "system/spatial_kinematics.h"
+#include "system/spatial_bodies.h"
 
 namespace freeplay {
 

@@ -7,6 +7,7 @@
 #include "system/evaluation.h"
 #include "system/finite.h"
 #include "system/guard_marks.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

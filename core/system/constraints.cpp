@@ -5,6 +5,7 @@
 #include "base/index.h"
 #include "system/evaluation.h"
 #include "system/guard_marks.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -1,6 +1,7 @@
 #include "system/force_map.h"
 
 #include "base/index.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay::force_map {
 

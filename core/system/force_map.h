@@ -6,7 +6,7 @@
 #include <span>
 
 #include "system/planar_kinematics.h"
-#include "system/spatial_kinematics.h"
+#include "system/spatial_bodies.h"
 
 namespace freeplay {
 

@@ -9,6 +9,7 @@
 #include "system/finite.h"
 #include "system/guard_marks.h"
 #include "system/joint_derivatives.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

@@ -1,6 +1,7 @@
 #include "system/inertia.h"
 
 #include "base/index.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "linear/sparse_matrix.h"
+#include "linear/sparse_entry.h"
 #include "system/layout.h"
 
 namespace freeplay {

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "component/joint_ref.h"
 

@@ -4,6 +4,7 @@
 
 #include "base/index.h"
 #include "system/body_coordinates.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {

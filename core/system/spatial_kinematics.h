@@ -5,7 +5,7 @@
 // axes]: R <- R exp(d). With s the marker's offset from the centre of mass and w its angular velocity, both in world
 // axes:
 //   P = r + s,  P' = r' + w x s,  P'' = r'' + w' x s + w x (w x s);  twist = J v with J = [1 -[s]R; 0 R].
-// This file and its planar counterpart alone know the coordinates of a body.
+// This file, its types in spatial_bodies.h and its planar counterpart alone know the coordinates of a body.
 #pragma once
 
 #include <cmath>
@@ -15,34 +15,9 @@
 #include <Eigen/Geometry>
 
 #include "model/model.h"
+#include "system/spatial_bodies.h"
 
 namespace freeplay::spatial {
-
-using Vector = Eigen::Vector3d;
-using Matrix = Eigen::Matrix3d;
-
-inline constexpr int coordinates = 7, velocities = 6;
-/// Entries of a twist or wrench that a spatial model has: all.
-inline constexpr int components[6] = {0, 1, 2, 3, 4, 5};
-
-/// What a marker's place on its body comes to, found once.
-struct Mount {
-  BodyId body = ground;
-  Vector position = Vector::Zero();      ///< offset from the centre of mass, principal axes [m]
-  Matrix rotation = Matrix::Identity();  ///< principal axes from the marker's
-};
-
-/// Orientation of a body (world from principal axes) and its angular velocity in world axes.
-struct Turn {
-  Matrix rotation = Matrix::Identity();
-  Vector w = Vector::Zero();
-};
-
-/// Offset of a marker from its body's centre of mass in world axes [m], and the body's Turn.
-struct Arm {
-  Vector s = Vector::Zero();
-  Turn turn;
-};
 
 inline Eigen::Map<const Vector> vector(const double* numbers) { return Eigen::Map<const Vector>(numbers); }
 inline Eigen::Map<Vector> target(double* numbers) { return Eigen::Map<Vector>(numbers); }
@@ -226,13 +201,6 @@ inline void difference_body(const double* base, const double* q, double* increme
   target(increment + 3) = logarithm(turn);
 }
 
-/// The types above, for code that serves both spaces.
-struct Bodies {
-  using Mount = spatial::Mount;
-  using Turn = spatial::Turn;
-  using Arm = spatial::Arm;
-  static constexpr int coordinates = spatial::coordinates, velocities = spatial::velocities;
-};
 inline Turn turn(Bodies, const double* q, const double* v) {
   Turn t;
   t.rotation = rotation_of(q + 3);
