@@ -8,9 +8,8 @@
 #include "no_friction.h"
 
 namespace freeplay {
+namespace play {
 namespace {
-
-using namespace play;
 
 /// Two toothed wheels, marker a in the middle of the first and marker b in that of the second, whose teeth have play:
 /// the two flanks of a tooth of b. It is ahead of where the ideal gear holds it, and touches one, or behind, the other.
@@ -200,8 +199,10 @@ constexpr Parameter gear_clearance_parameters[] = {
 };
 
 }  // namespace
+}  // namespace play
 
 Component gear_clearance() {
+  using namespace play;
   return joint<GearClearance>(
       {.name = "gear-clearance",
        .space = Space::planar,

@@ -7,9 +7,8 @@
 #include "freeplay/plugin.h"
 
 namespace freeplay {
+namespace play {
 namespace {
-
-using namespace play;
 
 constexpr SizeKeys slot_keys{"clearance.slot_width", "clearance.pin_radius", "clearance.gap", 2.0};
 
@@ -127,8 +126,10 @@ constexpr Parameter slot_rows[] = {
 constexpr auto point_on_line_clearance_parameters = joined(slot_rows, law_rows, wall_start_rows);
 
 }  // namespace
+}  // namespace play
 
 Component point_on_line_clearance() {
+  using namespace play;
   return joint<PointOnLineClearance>(
       {.name = "point-on-line-clearance",
        .space = Space::planar,

@@ -8,9 +8,8 @@
 #include "prismatic_clearance_in_space.h"
 
 namespace freeplay {
+namespace play {
 namespace {
-
-using namespace play;
 
 constexpr SizeKeys width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0, 2.0};
 
@@ -209,8 +208,10 @@ constexpr Parameter tilt_rows[] = {
 constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, wall_start_rows, tilt_rows);
 
 }  // namespace
+}  // namespace play
 
 Component prismatic_clearance() {
+  using namespace play;
   return joint<PrismaticClearance>(
       {.name = "prismatic-clearance",
        .space = Space::both,

@@ -10,12 +10,11 @@
 #include "wall_contacts.h"
 
 namespace freeplay {
+namespace play {
 namespace {
 
-using namespace play;
-
-constexpr SizeKeys width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0, 2.0};
-constexpr SizeKeys height_keys{"clearance.guide_height", "clearance.height", "clearance.gap_height", 2.0, 2.0};
+constexpr SizeKeys bar_width_keys{"clearance.guide_width", "clearance.width", "clearance.gap", 2.0, 2.0};
+constexpr SizeKeys bar_height_keys{"clearance.guide_height", "clearance.height", "clearance.gap_height", 2.0, 2.0};
 
 /// The eight corners of a block l x 2 B x 2 B_z, centred on b, each before two walls of a guide along the x axis of a:
 /// that across y, contacts 0 to 7, and that across z, 8 to 15. Front is +x of b, upper +y, right +z; corners are in the
@@ -206,7 +205,7 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     return pair;
   }
   static BarInGuide read_bar(const Parameters& p) {
-    const Radii widths = read_radii(p, width_keys);
+    const Radii widths = read_radii(p, bar_width_keys);
     const Radii heights = read_heights(p, widths.clearance);
     if (!widths.known() || !heights.known())
       throw BadParameter("clearance", "missing-key",
@@ -223,12 +222,13 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
   }
   /// One size alone: with as much play as across the width.
   static Radii read_heights(const Parameters& p, double gap) {
-    const bool guide = p.given(height_keys.outer), own = p.given(height_keys.inner), play = p.given(height_keys.play);
+    const bool guide = p.given(bar_height_keys.outer), own = p.given(bar_height_keys.inner),
+               play = p.given(bar_height_keys.play);
     if (!guide && !own && !play) return {not_a_number, not_a_number, gap};
-    if (play || guide == own) return read_radii(p, height_keys);
-    const double half = own ? 0.5 * p.number(height_keys.inner) : 0.5 * p.number(height_keys.outer) - gap;
+    if (play || guide == own) return read_radii(p, bar_height_keys);
+    const double half = own ? 0.5 * p.number(bar_height_keys.inner) : 0.5 * p.number(bar_height_keys.outer) - gap;
     if (!(half > 0.0))
-      throw BadParameter(height_keys.outer, "out-of-range", "'gap' must be below half of 'guide_height'");
+      throw BadParameter(bar_height_keys.outer, "out-of-range", "'gap' must be below half of 'guide_height'");
     return {half + gap, half, gap};
   }
   static void check(const Radii& sizes, const char* path, const char* wide, const Parameters& p) {
@@ -243,7 +243,8 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
 };
 
 }  // namespace
+}  // namespace play
 
-JointFace prismatic_clearance_in_space() { return joint_face<BarWithPlay>(); }
+JointFace prismatic_clearance_in_space() { return joint_face<play::BarWithPlay>(); }
 
 }  // namespace freeplay

@@ -8,11 +8,10 @@
 #include "revolute_clearance_in_space.h"
 
 namespace freeplay {
+namespace play {
 namespace {
 
 using namespace planar;
-
-using namespace play;
 
 /// Where the journal stands in the bearing, and how it moves.
 struct Gap : Approach {
@@ -36,8 +35,8 @@ struct Gap : Approach {
   Eigen::Vector2d n{1.0, 0.0}, t;
 };
 
-constexpr Event contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
-                                    {"contact_end", Crossing::falling, 1, event_fields}};
+constexpr Event pin_contact_events[] = {{"contact_begin", Crossing::rising, 1, event_fields},
+                                        {"contact_end", Crossing::falling, 1, event_fields}};
 constexpr Channel plane_gap_channels[] = {{"ex", "m"}, {"ey", "m"},    {"delta", "m"},   {"fn", "N"},
                                           {"ft", "N"}, {"power", "W"}, {"contact", "1"}, {"vt", "m/s"}};
 constexpr ChannelRole plane_gap_roles[] = {
@@ -88,7 +87,7 @@ class RevoluteClearance final : public Joint {
     layout.analytic_derivatives = 1;
     layout.clearance = radii_.clearance;
     surfaces_.declare(layout);
-    layout.events = contact_events;
+    layout.events = pin_contact_events;
     layout.event_roles = begin_and_end;
     layout.kinks = count_kinks(contact_law_, friction_law_);
     layout.channels = plane_gap_channels;
@@ -327,8 +326,10 @@ class RevoluteClearance final : public Joint {
 constexpr auto revolute_clearance_parameters = joined(radius_rows, bearing_length_rows, law_rows, start_rows);
 
 }  // namespace
+}  // namespace play
 
 Component revolute_clearance() {
+  using namespace play;
   return joint<RevoluteClearance>(
       {.name = "revolute-clearance",
        .space = Space::both,

@@ -8,9 +8,9 @@
 #include "revolute_play_ends.h"
 
 namespace freeplay {
+namespace play {
 namespace {
 
-using namespace play;
 using space::PairInFirstAxes;
 
 /// Journal (radius R_J, marker b) in a bearing (radius R_B, marker a) of length L, in space; the axes are the z axes.
@@ -442,8 +442,9 @@ class PinInSpace final : public Joint {
 };
 
 }  // namespace
+}  // namespace play
 
-JointFace revolute_clearance_in_space() { return joint_face<PinInSpace<Kept::by_shoulders>>(); }
-JointFace cylindrical_clearance_in_space() { return joint_face<PinInSpace<Kept::not_along>>(); }
+JointFace revolute_clearance_in_space() { return joint_face<play::PinInSpace<play::Kept::by_shoulders>>(); }
+JointFace cylindrical_clearance_in_space() { return joint_face<play::PinInSpace<play::Kept::not_along>>(); }
 
 }  // namespace freeplay

@@ -6,9 +6,9 @@
 #include "spatial_play.h"
 
 namespace freeplay {
+namespace play {
 namespace {
 
-using namespace play;
 using space::PairInFirstAxes;
 using space::RelativeForce;
 using space::RelativeMotion;
@@ -249,8 +249,10 @@ class SphericalClearance final : public Joint {
 constexpr auto spherical_clearance_parameters = joined(radius_rows, law_rows, start_rows);
 
 }  // namespace
+}  // namespace play
 
 Component spherical_clearance() {
+  using namespace play;
   return joint<SphericalClearance>(
       {.name = "spherical-clearance",
        .space = Space::spatial,
