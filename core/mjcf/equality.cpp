@@ -125,12 +125,12 @@ class EqualityReader {
     if (!known) return;
     if (!welded) joint.parent.frame.translation() = anchor.value_or(Eigen::Vector3d::Zero());
     const Eigen::Isometry3d between =
-        world_.poses[at(joint.child.link)].inverse() * world_.poses[at(joint.parent.link)];
+        urdf::inverse_pose(world_.poses[at(joint.child.link)]) * world_.poses[at(joint.parent.link)];
     if (!welded) {
       joint.child.frame.translation() = between * joint.parent.frame.translation();
       return;
     }
-    joint.parent.frame = between.inverse();
+    joint.parent.frame = urdf::inverse_pose(between);
     if (pose.empty() || std::all_of(pose.begin() + 3, pose.end(), [](double part) { return part == 0.0; })) return;
     joint.parent.frame.translation() << pose[0], pose[1], pose[2];
     joint.parent.frame.linear() =

@@ -110,7 +110,7 @@ class GeomReader {
 
   void stretch(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const Eigen::Vector3d along = from - to;
-    if (along.stableNorm() <= 1e-12) {
+    if (urdf::length_of(along) <= urdf::shortest_direction) {
       messages_.error(spot_of(xml_, "fromto"), "bad-urdf", fmt::format("both ends of {} are the same point", owner()));
       return;
     }

@@ -56,10 +56,10 @@ void bound_inertia(const Settings& settings, urdf::Link& link) {
     link.has_inertial = true;
   }
   if (settings.least_moment <= 0.0) return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(link.inertia);
-  if (solver.eigenvalues()[0] >= settings.least_moment) return;
-  const Eigen::Vector3d raised = solver.eigenvalues().cwiseMax(settings.least_moment);
-  link.inertia = solver.eigenvectors() * raised.asDiagonal() * solver.eigenvectors().transpose();
+  const urdf::PrincipalTensor own = urdf::principal(link.inertia);
+  if (own.values[0] >= settings.least_moment) return;
+  const Eigen::Vector3d raised = own.values.cwiseMax(settings.least_moment);
+  link.inertia = own.axes * raised.asDiagonal() * own.axes.transpose();
 }
 
 void scale_masses(const Settings& settings, urdf::Robot& robot) {

@@ -7,11 +7,9 @@
 namespace freeplay::mjcf {
 namespace {
 
-constexpr double shortest = 1e-12;
-
 /// A zero axis gives no direction: reported.
 bool has_length(const Eigen::Vector3d& axis, const Element& element, const char* name, Messages& messages) {
-  if (axis.stableNorm() > shortest) return true;
+  if (urdf::length_of(axis) > urdf::shortest_direction) return true;
   messages.error(spot_of(element.xml(), name), "bad-urdf",
                  fmt::format("'{}' of {} has zero length: it gives no direction", name, element.owner()));
   return false;
@@ -79,18 +77,14 @@ Eigen::Isometry3d read_pose(Element& element, const Settings& settings, Messages
 }
 
 Eigen::Matrix3d turn_of(const double* quaternion, const Spot& spot, const std::string& owner, Messages& messages) {
-  Eigen::Quaterniond q(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
-  const double length = q.coeffs().stableNorm();
-  if (length > shortest) {
-    q.coeffs() /= length;
-    return q.toRotationMatrix();
-  }
+  const auto turn = urdf::turn_of_quaternion(quaternion[0], quaternion[1], quaternion[2], quaternion[3]);
+  if (turn) return *turn;
   messages.error(spot, "bad-urdf", fmt::format("the quaternion of {} is zero: it gives no direction", owner));
   return Eigen::Matrix3d::Identity();
 }
 
 Eigen::Matrix3d turn_to(const Eigen::Vector3d& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), axis).toRotationMatrix();
+  return urdf::least_turn(Eigen::Vector3d::UnitZ(), axis);
 }
 
 }  // namespace freeplay::mjcf

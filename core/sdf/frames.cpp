@@ -99,7 +99,7 @@ void Frames::place(int frame) {
   const int base = bases_[at(frame)];
   local_[at(frame)] = base == here.scope ? here.pose : pose_in(base, here.scope) * here.pose;
   const int placed = placements_[at(frame)];
-  if (placed != none) local_[at(frame)] = local_[at(frame)] * pose_in(placed, frame).inverse();
+  if (placed != none) local_[at(frame)] = local_[at(frame)] * urdf::inverse_pose(pose_in(placed, frame));
 }
 
 /// Places what a frame needs before the frame itself.

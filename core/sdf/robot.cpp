@@ -129,7 +129,7 @@ class RobotBuilder {
     joint.spot = joint.type_spot = joint.axis_spot = robot_.links[at(link)].spot;
     joint.element = robot_.links[at(link)].element;
     joint.axis_given = true;
-    joint.parent = {parent, poses_[at(parent)].inverse() * poses_[at(link)], joint.spot, joint.spot};
+    joint.parent = {parent, urdf::inverse_pose(poses_[at(parent)]) * poses_[at(link)], joint.spot, joint.spot};
     joint.child = {link, Eigen::Isometry3d::Identity(), joint.spot, joint.spot};
     robot_.joints.push_back(std::move(joint));
   }
@@ -178,8 +178,8 @@ class RobotBuilder {
     }
     joint.name = fresh_name(source.frame, "joint");
     const Eigen::Isometry3d place = frames().pose(source.frame);
-    joint.parent.frame = poses_[at(joint.parent.link)].inverse() * place;
-    joint.child.frame = poses_[at(joint.child.link)].inverse() * place;
+    joint.parent.frame = urdf::inverse_pose(poses_[at(joint.parent.link)]) * place;
+    joint.child.frame = urdf::inverse_pose(poses_[at(joint.child.link)]) * place;
     set_axes(source, joint);
     indices_[source.frame] = robot_.joints.size();
     robot_.joints.push_back(std::move(joint));
@@ -209,7 +209,7 @@ class RobotBuilder {
     joint.axis = direction(source, source.axis);
     Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
     if (source.kind == Kind::screw) {
-      turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), joint.axis).toRotationMatrix();
+      turn = urdf::least_turn(Eigen::Vector3d::UnitZ(), joint.axis);
     } else if (source.kind == Kind::universal) {
       const Eigen::Vector3d second = direction(source, source.second);
       if (std::abs(second.dot(joint.axis)) > same_direction) {

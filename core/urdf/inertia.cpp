@@ -1,14 +1,9 @@
 #include "urdf/inertia.h"
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 namespace freeplay::urdf {
 namespace {
-
-Eigen::Vector3d principal_values(const Eigen::Matrix3d& inertia) {
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();
-}
 
 std::string text(const Eigen::Vector3d& values) {
   return fmt::format("{:.6g}, {:.6g}, {:.6g}", values[0], values[1], values[2]);
@@ -40,7 +35,7 @@ const Spot& moment_spot(const Link& link, const Eigen::Vector3d& normal) {
 
 std::string fault_of_inertia(const Eigen::Matrix3d& inertia) {
   constexpr double rounding = 1e-12, allowed = 1e-6;
-  const Eigen::Vector3d p = principal_values(inertia);
+  const Eigen::Vector3d p = principal(inertia).values;
   const double largest = p.cwiseAbs().maxCoeff();
   if (p[0] < -rounding * largest) return "a principal value is negative";
   if (p[2] - p[1] - p[0] > allowed * largest) return "the principal values break the triangle inequality";
@@ -48,11 +43,10 @@ std::string fault_of_inertia(const Eigen::Matrix3d& inertia) {
 }
 
 Eigen::Matrix3d repaired(const Eigen::Matrix3d& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(inertia);
-  Eigen::Vector3d p = solver.eigenvalues().cwiseMax(0.0);
+  const auto [values, axes] = principal(inertia);
+  Eigen::Vector3d p = values.cwiseMax(0.0);
   const double missing = p[2] - p[1] - p[0];
   if (missing > 0.0) p.head<2>().array() += 0.5 * missing;
-  const Eigen::Matrix3d& axes = solver.eigenvectors();
   return axes * p.asDiagonal() * axes.transpose();
 }
 
@@ -67,7 +61,7 @@ void check_inertia(Robot& robot, const Options& options, bool planar, const Eige
     const double about_normal = planar ? moment(link, own_normal) : 0.0;
     const bool refused = planar ? about_normal < -1e-12 * link.inertia.cwiseAbs().maxCoeff() : !fault.empty();
     if (!refused && fault.empty()) continue;
-    const std::string values = text(principal_values(link.inertia));
+    const std::string values = text(principal(link.inertia).values);
     const Spot& spot = planar && refused ? moment_spot(link, own_normal) : blamed(link);
     const std::string what =
         planar && refused
@@ -77,7 +71,7 @@ void check_inertia(Robot& robot, const Options& options, bool planar, const Eige
       link.inertia = repaired(link.inertia);
       messages.warning(spot, "urdf-ignored",
                        fmt::format("the inertia of link '{}' is mended: {} (principal values {}, now {} kg*m^2)",
-                                   link.name, what, values, text(principal_values(link.inertia))));
+                                   link.name, what, values, text(principal(link.inertia).values)));
     } else if (refused) {
       messages.error(
           spot, "out-of-range",

@@ -112,7 +112,7 @@ class Projector {
       return;
     }
     see(parent);
-    const Eigen::Isometry3d upright_zero = mount(joint.parent.link).pose * joint.child_pose() * here.pose.inverse();
+    const Eigen::Isometry3d upright_zero = mount(joint.parent.link).pose * joint.child_pose() * inverse_pose(here.pose);
     out_.poses[at(link)] = carrier * flat(seen(upright_zero, axes_));
   }
 

@@ -39,8 +39,8 @@ class LinkNames {
 /// Makes `axis` a unit vector; reports a zero one, and notes one whose length is no rounding of 1.
 inline Eigen::Vector3d unit_axis(const Eigen::Vector3d& axis, const Spot& spot, const std::string& owner,
                                  Messages& messages) {
-  const double length = axis.stableNorm();
-  if (length > 1e-12) {
+  const double length = length_of(axis);
+  if (length > shortest_direction) {
     constexpr double rounding = 1e-3;
     if (std::abs(length - 1.0) > rounding) {
       messages.warning(spot, "urdf-ignored",

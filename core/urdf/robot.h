@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Geometry>
+#include "urdf/direction.h"
 
 namespace freeplay::urdf {
 
@@ -101,7 +101,7 @@ struct Joint {
   bool axis_in_world = false;   ///< with closed_at_zero: `axis` is in axes of the root link
 
   /// Of the child's frame in that of the parent, at coordinate zero.
-  Eigen::Isometry3d child_pose() const { return parent.frame * child.frame.inverse(); }
+  Eigen::Isometry3d child_pose() const { return parent.frame * inverse_pose(child.frame); }
   bool moves() const { return type != JointType::fixed; }
   bool turns() const { return type == JointType::revolute; }
   /// Has it freedoms that only a spatial model knows?

@@ -5,11 +5,6 @@
 namespace freeplay::urdf {
 namespace {
 
-/// The least rotation that takes the unit vector `from` to `to`.
-Eigen::Matrix3d least_turn(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
-  return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
-}
-
 class SpatialView final : public View {
  public:
   SpatialView(const Robot& robot, Nodes& nodes)
@@ -98,7 +93,7 @@ class SpatialView final : public View {
     if (!joint.closed_at_zero) return out;
     // The parent's frame stands where the child's is when all coordinates are zero.
     const Eigen::Isometry3d zero = body_pose(joint.child.link) * out.second;
-    out.first = body_pose(joint.parent.link).inverse() * zero;
+    out.first = inverse_pose(body_pose(joint.parent.link)) * zero;
     if (joint.axis_in_world) out.axis = zero.linear().transpose() * joint.axis;
     return out;
   }

@@ -34,13 +34,9 @@ bool in_degrees(const XmlElement& xml, Messages& messages) {
   return false;
 }
 
-Eigen::Matrix3d turn_of_quaternion(const XmlElement& xml, const std::vector<double>& numbers, Messages& messages) {
-  Eigen::Quaterniond turn(numbers[6], numbers[3], numbers[4], numbers[5]);
-  const double length = turn.coeffs().stableNorm();
-  if (length > 1e-12) {
-    turn.coeffs() /= length;
-    return turn.toRotationMatrix();
-  }
+Eigen::Matrix3d read_quaternion(const XmlElement& xml, const std::vector<double>& numbers, Messages& messages) {
+  const auto turn = turn_of_quaternion(numbers[6], numbers[3], numbers[4], numbers[5]);
+  if (turn) return *turn;
   messages.error(whole_text_spot(xml), "bad-urdf", "the quaternion of the pose is zero: it gives no direction");
   return Eigen::Matrix3d::Identity();
 }
@@ -99,7 +95,7 @@ Eigen::Isometry3d text_pose(const XmlElement& xml, Messages& messages) {
   pose.translation() << numbers[0], numbers[1], numbers[2];
   const bool degrees = in_degrees(xml, messages);
   if (quaternion) {
-    pose.linear() = turn_of_quaternion(xml, numbers, messages);
+    pose.linear() = read_quaternion(xml, numbers, messages);
   } else if (numbers[3] != 0.0 || numbers[4] != 0.0 || numbers[5] != 0.0) {
     const double unit = degrees ? std::numbers::pi / 180.0 : 1.0;
     if (!degrees) doubt_turns(xml, numbers, messages);
