@@ -9,8 +9,6 @@
 namespace freeplay {
 namespace {
 
-using svg::Point;
-
 constexpr int arc_parts = 48, curve_parts = 240;  // of a whole turn; of a curve
 
 const ParameterValue* value_of(const JointElement& joint, const char* name) {
@@ -19,9 +17,12 @@ const ParameterValue* value_of(const JointElement& joint, const char* name) {
   return found == joint.parameters->values.end() ? nullptr : &found->second;
 }
 
-Point towards(const Point& u, double angle) { return std::cos(angle) * u + std::sin(angle) * Point{-u.y, u.x}; }
+svg::Point towards(const svg::Point& u, double angle) {
+  return std::cos(angle) * u + std::sin(angle) * svg::Point{-u.y, u.x};
+}
 
-void add_arc(std::vector<Point>& to, const Point& middle, const Point& u, double radius, double from, double until) {
+void add_arc(std::vector<svg::Point>& to, const svg::Point& middle, const svg::Point& u, double radius, double from,
+             double until) {
   const int parts = 1 + static_cast<int>(arc_parts * std::abs(until - from) / whole_turn);
   for (int i = 0; i <= parts; ++i) to.push_back(middle + radius * towards(u, from + (until - from) * i / parts));
 }
@@ -36,14 +37,14 @@ std::optional<StrandShape> strands_of(const JointElement& joint) {
 }
 
 // The normals of both strands stand at the angle theta to both sides of the line of centres u.
-std::vector<Point> strand_line(const StrandShape& strands, const Point& first, const Point& second) {
+std::vector<svg::Point> strand_line(const StrandShape& strands, const svg::Point& first, const svg::Point& second) {
   const double apart = length(second - first), sense = strands.crossed ? -1.0 : 1.0;
   const double across = strands.second - sense * strands.first;
   if (!(apart > std::abs(across))) return {};
-  const Point u = (1.0 / apart) * (second - first);
+  const svg::Point u = (1.0 / apart) * (second - first);
   const double theta = std::acos(-sense * across / apart);
   const double at_second = strands.crossed ? theta - std::numbers::pi : theta;
-  std::vector<Point> line;
+  std::vector<svg::Point> line;
   add_arc(line, first, u, strands.first, theta, whole_turn - theta);
   add_arc(line, second, u, strands.second, -at_second, at_second);
   line.push_back(line.front());
@@ -56,12 +57,12 @@ std::optional<CurveShape> curve_of(const JointElement& joint) {
   return CurveShape{curve->formula, form->word == 1};
 }
 
-std::vector<std::vector<Point>> curve_lines(const CurveShape& shape, const Point& origin, double angle, const Point& at,
-                                            double reach) {
-  const Point h{std::cos(angle), std::sin(angle)}, n{-h.y, h.x}, d = at - origin;
+std::vector<std::vector<svg::Point>> curve_lines(const CurveShape& shape, const svg::Point& origin, double angle,
+                                                 const svg::Point& at, double reach) {
+  const svg::Point h{std::cos(angle), std::sin(angle)}, n{-h.y, h.x}, d = at - origin;
   const double middle = h.x * d.x + h.y * d.y;
   const double from = shape.polar ? 0.0 : middle - reach, until = shape.polar ? whole_turn : middle + reach;
-  std::vector<std::vector<Point>> lines(1);
+  std::vector<std::vector<svg::Point>> lines(1);
   for (int i = 0; i <= curve_parts; ++i) {
     const double x[] = {from + (until - from) * i / curve_parts};
     double y = 0.0;
@@ -77,7 +78,7 @@ std::vector<std::vector<Point>> curve_lines(const CurveShape& shape, const Point
   return lines;
 }
 
-void draw_outline(svg::Page& page, const std::vector<Point>& points, const char* kind) {
+void draw_outline(svg::Page& page, const std::vector<svg::Point>& points, const char* kind) {
   if (points.size() < 2) return;
   for (std::size_t i = 1; i < points.size(); ++i) page.shun(points[i - 1], points[i]);
   page.shape("<path class=\"{}\" d=\"{}\" fill=\"none\" stroke=\"#aa3377\" stroke-width=\"2.5\"/>\n", kind,

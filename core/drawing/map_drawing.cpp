@@ -18,11 +18,11 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std:
 constexpr double wide_range = 50.0;  // of values whose levels are powers
 constexpr double plot = 620.0, left = 80.0, top = 50.0, legend = 210.0, bottom = 60.0;
 
-using svg::escaped, svg::Point, svg::px;
+using svg::escaped, svg::px;
 
-class Drawing {
+class MapDrawing {
  public:
-  explicit Drawing(const PositionMap& map) : map_(map) {
+  explicit MapDrawing(const PositionMap& map) : map_(map) {
     scale_ = plot / std::max(map.x.back() - map.x.front(), map.y.back() - map.y.front());
     if (!std::isfinite(scale_)) scale_ = 1.0;
     width_ = std::max(scale_ * (map.x.back() - map.x.front()), 1.0);
@@ -145,13 +145,13 @@ class Drawing {
   }
 
   /// As one path; rectangles above each other are one, for a small file.
-  std::string outline(const std::vector<std::vector<Point>>& polygons) const {
-    const auto upright = [](const std::vector<Point>& p) {
+  std::string outline(const std::vector<std::vector<svg::Point>>& polygons) const {
+    const auto upright = [](const std::vector<svg::Point>& p) {
       return p.size() == 4 && p[0].x == p[3].x && p[1].x == p[2].x && p[0].y == p[1].y && p[2].y == p[3].y;
     };
     std::string d;
-    std::vector<Point> strip;
-    for (const std::vector<Point>& polygon : polygons) {
+    std::vector<svg::Point> strip;
+    for (const std::vector<svg::Point>& polygon : polygons) {
       const bool goes_on = upright(strip) && upright(polygon) && strip[3].x == polygon[0].x &&
                            strip[3].y == polygon[0].y && strip[2].x == polygon[1].x;
       if (goes_on) {
@@ -165,7 +165,7 @@ class Drawing {
     return strip.empty() ? d : d + line_of(strip) + "Z";
   }
 
-  std::string line_of(const std::vector<Point>& points) const {
+  std::string line_of(const std::vector<svg::Point>& points) const {
     std::string d;
     for (std::size_t i = 0; i < points.size(); ++i) {
       d += fmt::format("{}{},{}", i == 0 ? "M" : "L", px(at_x(points[i].x)), px(at_y(points[i].y)));
@@ -175,9 +175,9 @@ class Drawing {
 
   void draw_contours(const std::vector<double>& field) {
     for (const double level : levels_) {
-      for (const std::vector<Point>& line : joined(contour(map_.x, map_.y, field, level))) {
+      for (const std::vector<svg::Point>& line : joined(contour(map_.x, map_.y, field, level))) {
         body_ += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"black\" stroke-width=\"0.8\"/>\n", line_of(line));
-        if (const Point* place = label_place(line)) {
+        if (const svg::Point* place = label_place(line)) {
           label_text_ += fmt::format(
               "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\" stroke=\"white\" stroke-width=\"3\" "
               "paint-order=\"stroke\">{:.4g}</text>\n",
@@ -187,7 +187,7 @@ class Drawing {
     }
   }
 
-  bool is_good(const Point& p) const {
+  bool is_good(const svg::Point& p) const {
     const auto nearest = [](const std::vector<double>& axis, double at) {
       return std::lround((at - axis.front()) / (axis.back() - axis.front()) * static_cast<double>(axis.size() - 1));
     };
@@ -197,19 +197,19 @@ class Drawing {
 
   /// The point of a line that is farthest from the labels so far, off the path; none where the line is short or all is
   /// taken.
-  const Point* label_place(const std::vector<Point>& line) {
+  const svg::Point* label_place(const std::vector<svg::Point>& line) {
     double length = 0.0;
     for (std::size_t i = 1; i < line.size(); ++i) {
       length += scale_ * std::hypot(line[i].x - line[i - 1].x, line[i].y - line[i - 1].y);
     }
     if (length < 60.0) return nullptr;
-    const Point* best = nullptr;
+    const svg::Point* best = nullptr;
     double room = 30.0;
-    for (const Point& p : line) {
+    for (const svg::Point& p : line) {
       if (!is_good(p)) continue;
       double nearest =
           std::min({at_x(p.x) - left, left + width_ - at_x(p.x), at_y(p.y) - top, top + height_ - at_y(p.y)}) + 10.0;
-      for (const Point& other : labels_) {
+      for (const svg::Point& other : labels_) {
         nearest = std::min(nearest, scale_ * std::hypot(p.x - other.x, p.y - other.y));
       }
       for (const auto& other : map_.path) {
@@ -231,7 +231,7 @@ class Drawing {
       }
     }
     if (map_.determinant.empty()) return;
-    for (const std::vector<Point>& line : joined(contour(map_.x, map_.y, map_.determinant, 0.0))) {
+    for (const std::vector<svg::Point>& line : joined(contour(map_.x, map_.y, map_.determinant, 0.0))) {
       body_ +=
           fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"black\" stroke-width=\"2.5\" stroke-dasharray=\"8,4\"/>\n",
                       line_of(line));
@@ -241,7 +241,7 @@ class Drawing {
 
   void draw_path() {
     if (map_.path.size() < 2) return;
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const auto& p : map_.path) points.push_back({p[0], p[1]});
     const std::string line = line_of(points);
     body_ += fmt::format(
@@ -318,13 +318,13 @@ class Drawing {
   const PositionMap& map_;
   double scale_ = 1.0, width_ = 1.0, height_ = 1.0, least_ = nan, most_ = nan;
   std::vector<double> levels_;
-  std::vector<Point> labels_;
+  std::vector<svg::Point> labels_;
   bool singular_ = false;
   std::string body_, label_text_;
 };
 
 }  // namespace
 
-std::string map_svg(const PositionMap& map) { return Drawing(map).text(); }
+std::string map_svg(const PositionMap& map) { return MapDrawing(map).text(); }
 
 }  // namespace freeplay

@@ -19,19 +19,12 @@
 namespace freeplay {
 namespace {
 
-constexpr double width = 900.0, most_height = 1400.0, least_height = 260.0, margin = 70.0;
-constexpr double inset_width = 262.0, inset_height = 274.0;
-constexpr double rim = 12.0, least_rim = 8.0;  // radii of gears
-constexpr double most_pitch = 3.0;             // radius of a wheel, of the rest of the mechanism
-constexpr double curve_reach = 0.15;           // of a curve to both sides, of the width
-
 using svg::length;
-using svg::Point;
 using svg::px;
 
-class Drawing {
+class MechanismDrawing {
  public:
-  Drawing(const System& system, const MechanismPicture& picture)
+  MechanismDrawing(const System& system, const MechanismPicture& picture)
       : model_(system.model()), picture_(picture), q_(picture.q), given_(system, picture.q), shapes_(model_) {
     if (picture.at_start) moved_ = given_.moved();
   }
@@ -55,30 +48,36 @@ class Drawing {
   }
 
  private:
+  static constexpr double width = 900.0, most_height = 1400.0, least_height = 260.0, margin = 70.0;
+  static constexpr double inset_width = 262.0, inset_height = 274.0;
+  static constexpr double rim = 12.0, least_rim = 8.0;  // radii of gears
+  static constexpr double most_pitch = 3.0;             // radius of a wheel, of the rest of the mechanism
+  static constexpr double curve_reach = 0.15;           // of a curve to both sides, of the width
+
   // --- places ----------------------------------------------------------------------------------------------------
 
-  Point world(const Marker& marker) const { return world(marker.body, {marker.position[0], marker.position[1]}); }
+  svg::Point world(const Marker& marker) const { return world(marker.body, {marker.position[0], marker.position[1]}); }
 
-  Point world(BodyId id, const Point& p) const { return world(id, p, q_); }
+  svg::Point world(BodyId id, const svg::Point& p) const { return world(id, p, q_); }
 
-  Point world(BodyId id, const Point& p, std::span<const double> q) const {
+  svg::Point world(BodyId id, const svg::Point& p, std::span<const double> q) const {
     if (id == ground) return p;
     const std::size_t b = static_cast<std::size_t>(id);
     const double angle = q[3 * b + 2], c = std::cos(angle), s = std::sin(angle);
-    const Point arm{p.x - model_.bodies[b].com[0], p.y - model_.bodies[b].com[1]};
+    const svg::Point arm{p.x - model_.bodies[b].com[0], p.y - model_.bodies[b].com[1]};
     return {q[3 * b] + c * arm.x - s * arm.y, q[3 * b + 1] + s * arm.x + c * arm.y};
   }
 
   /// Points of a body that a joint or a force is at, those of outlines, and its centre of mass.
-  std::vector<Point> points_of(BodyId id, std::span<const double> q) const {
-    std::vector<Point> points;
+  std::vector<svg::Point> points_of(BodyId id, std::span<const double> q) const {
+    std::vector<svg::Point> points;
     for (std::size_t m = 0; m < model_.markers.size(); ++m) {
       const Marker& one = model_.markers[m];
       if (one.body == id && !shapes_.stands_for(m)) points.push_back(world(id, {one.position[0], one.position[1]}, q));
     }
     for (const JointShape& shape : shapes_.all()) {
       if (marker(shape.marker).body != id) continue;
-      for (const Point& p : shape.points) points.push_back(world(id, p, q));
+      for (const svg::Point& p : shape.points) points.push_back(world(id, p, q));
     }
     const std::size_t b = static_cast<std::size_t>(id);
     points.push_back({q[3 * b], q[3 * b + 1]});
@@ -90,7 +89,7 @@ class Drawing {
   }
   const Marker& marker(int index) const { return model_.markers[static_cast<std::size_t>(index)]; }
 
-  Point page(const Point& p) const {
+  svg::Point page(const svg::Point& p) const {
     return {width / 2 + scale_ * (p.x - middle_.x), height_ / 2 - scale_ * (p.y - middle_.y)};
   }
 
@@ -98,7 +97,7 @@ class Drawing {
   static bool is_origin(const Marker& marker) { return marker.name.ends_with("/origin"); }
 
   void fit() {
-    std::vector<Point> all;
+    std::vector<svg::Point> all;
     for (const Marker& one : model_.frames) {
       if (!is_origin(one) || one.body != ground) all.push_back(world(one));
     }
@@ -106,11 +105,11 @@ class Drawing {
     for (const JointElement& joint : model_.joints) {
       const auto stops = stops_of(joint);
       if (!stops || !stops->slides) continue;
-      const Point x{std::cos(angle_of(marker(joint.marker_a))), std::sin(angle_of(marker(joint.marker_a)))};
+      const svg::Point x{std::cos(angle_of(marker(joint.marker_a))), std::sin(angle_of(marker(joint.marker_a)))};
       for (const double s : {stops->lower, stops->upper}) all.push_back(world(marker(joint.marker_a)) + s * x);
     }
     const auto add = [&](BodyId id, std::span<const double> q) {
-      const std::vector<Point> points = points_of(id, q);
+      const std::vector<svg::Point> points = points_of(id, q);
       all.insert(all.end(), points.begin(), points.end());
     };
     for (const BodyId id : moved_) add(id, given_.q());
@@ -122,14 +121,14 @@ class Drawing {
     }
     for (const JointElement& joint : model_.joints) {
       if (const auto curve = curve_of(joint); curve && !curve->polar) continue;  // its piece goes by the scale
-      for (const std::vector<Point>& line : outlines(joint)) all.insert(all.end(), line.begin(), line.end());
+      for (const std::vector<svg::Point>& line : outlines(joint)) all.insert(all.end(), line.begin(), line.end());
     }
     auto [low, high] = svg::ends_of(all);
     largest_pitch_ = most_pitch * std::max(high.x - low.x, high.y - low.y);
     for (const JointElement& joint : model_.joints) {
       if (joint.gear < 0) continue;
       const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
-      const Point from = world_place(gear.first), to = world_place(gear.second);
+      const svg::Point from = world_place(gear.first), to = world_place(gear.second);
       const PitchRadii radii = pitch_radii(length(to - from), ratio_of_wheels(model_, gear));
       if (!has_pitch_circles(gear, radii)) continue;
       for (const auto& [at, radius] : {std::pair(from, radii.first), std::pair(to, radii.second)}) {
@@ -139,7 +138,7 @@ class Drawing {
     }
     std::tie(low, high) = svg::ends_of(all);
     middle_ = 0.5 * (low + high);
-    const Point size = high - low;
+    const svg::Point size = high - low;
     const double largest = std::max({size.x, size.y, 1e-9});
     scale_ = (width - 2 * margin) / std::max(size.x, 1e-6 * largest);
     scale_ = std::min(scale_, (most_height - 2 * margin) / std::max(size.y, 1e-6 * largest));
@@ -149,21 +148,21 @@ class Drawing {
   }
 
   /// Where strands or a curve go [m]; one that is not closed as far as a part of the picture.
-  std::vector<std::vector<Point>> outlines(const JointElement& joint) const {
-    const Point a = world(marker(joint.marker_a)), b = world(marker(joint.marker_b));
+  std::vector<std::vector<svg::Point>> outlines(const JointElement& joint) const {
+    const svg::Point a = world(marker(joint.marker_a)), b = world(marker(joint.marker_b));
     if (const auto strands = strands_of(joint)) return {strand_line(*strands, a, b)};
-    std::vector<std::vector<Point>> lines;
+    std::vector<std::vector<svg::Point>> lines;
     for (const JointShape& shape : JointShapes::of(model_, joint)) {
       lines.emplace_back();
-      for (const Point& p : shape.points) lines.back().push_back(world(marker(shape.marker).body, p));
+      for (const svg::Point& p : shape.points) lines.back().push_back(world(marker(shape.marker).body, p));
     }
     const auto curve = curve_of(joint);
     if (!curve) return lines;
     return curve_lines(*curve, a, angle_of(marker(joint.marker_a)), b, curve_reach * width / scale_);
   }
   void draw_outlines(const JointElement& joint, const char* kind) {
-    for (std::vector<Point>& line : outlines(joint)) {
-      for (Point& p : line) p = page(p);
+    for (std::vector<svg::Point>& line : outlines(joint)) {
+      for (svg::Point& p : line) p = page(p);
       draw_outline(out_, line, kind);
     }
   }
@@ -176,10 +175,10 @@ class Drawing {
   // --- shapes ----------------------------------------------------------------------------------------------------
 
   void draw_body(BodyId id) {
-    std::vector<Point> points = points_of(id, q_);
-    for (Point& p : points) p = page(p);
+    std::vector<svg::Point> points = points_of(id, q_);
+    for (svg::Point& p : points) p = page(p);
     const std::size_t b = static_cast<std::size_t>(id);
-    const std::vector<Point> outline = svg::hull(points);
+    const std::vector<svg::Point> outline = svg::hull(points);
     out_.shape(
         "<path d=\"{} Z\" fill=\"{}\" fill-opacity=\"0.25\" stroke=\"{}\" stroke-width=\"7\" stroke-opacity=\"0.55\" "
         "stroke-linejoin=\"round\" stroke-linecap=\"round\"/>\n",
@@ -190,8 +189,8 @@ class Drawing {
 
   /// Where the file gives the pose of a body that stands elsewhere: pale and dashed.
   void draw_as_given(BodyId id) {
-    std::vector<Point> points = points_of(id, given_.q());
-    for (Point& p : points) p = page(p);
+    std::vector<svg::Point> points = points_of(id, given_.q());
+    for (svg::Point& p : points) p = page(p);
     out_.shape(
         "<path class=\"given\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\" stroke-opacity=\"0.35\" "
         "stroke-dasharray=\"9 6\" stroke-linejoin=\"round\"/>\n",
@@ -202,8 +201,8 @@ class Drawing {
   void draw_pale(std::span<const double> q) {
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
       const BodyId id = static_cast<BodyId>(b);
-      std::vector<Point> points = points_of(id, q);
-      for (Point& p : points) p = page(p);
+      std::vector<svg::Point> points = points_of(id, q);
+      for (svg::Point& p : points) p = page(p);
       out_.shape(
           "<path class=\"other\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-opacity=\"0.3\" "
           "stroke-linejoin=\"round\"/>\n",
@@ -212,16 +211,16 @@ class Drawing {
   }
 
   void draw_trace(const Trace& trace) {
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const auto& p : trace.points) points.push_back(page({p[0], p[1]}));
     draw_way(out_, points, "trace");
     out_.label(trace.name, points.back(), "fill=\"#0072B2\"");
   }
 
   /// A line, without points that move it less than a part of a pixel.
-  static void draw_way(svg::Page& to, const std::vector<Point>& points, const char* kind) {
-    std::vector<Point> kept;
-    for (const Point& p : points) {
+  static void draw_way(svg::Page& to, const std::vector<svg::Point>& points, const char* kind) {
+    std::vector<svg::Point> kept;
+    for (const svg::Point& p : points) {
       if (kept.empty() || length(p - kept.back()) > 0.3) kept.push_back(p);
     }
     if (kept.size() == 1) kept.push_back(kept.front());
@@ -238,7 +237,7 @@ class Drawing {
     const double top = inset_height * static_cast<double>(index) + 12.0, left = width, side = inset_width - 12.0;
     const double bottom = top + inset_height - 24.0, scale = scale_ * magnified.factor;
     const double play = scale * joint.layout.clearance;
-    const Point middle{left + 0.5 * side, 0.5 * (top + bottom) + 6.0};
+    const svg::Point middle{left + 0.5 * side, 0.5 * (top + bottom) + 6.0};
     svg::Page box;
     box.shape(
         "<clipPath id=\"inset{0}\"><rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\"/></clipPath>\n"
@@ -258,7 +257,8 @@ class Drawing {
     box.shape("<path d=\"M{0} {1}m-4 0h8m-4 -4v8\" stroke=\"#cc3311\" stroke-width=\"0.8\"/>\n", px(middle.x),
               px(middle.y));
     const double whole = 0.48 * (bottom - top) * magnified.factor / play;  // times that fit
-    const std::vector<Point> points = walls ? way_along(magnified, middle, 0.9 * side) : way_about(magnified, middle);
+    const std::vector<svg::Point> points =
+        walls ? way_along(magnified, middle, 0.9 * side) : way_about(magnified, middle);
     if (!points.empty()) {
       draw_way(box, points, "orbit");
       box.circle(points.back(), 4.0, "class=\"journal\" fill=\"black\"");
@@ -276,19 +276,19 @@ class Drawing {
   }
 
   /// The way of a centre in the box.
-  std::vector<Point> way_about(const MagnifiedJoint& magnified, const Point& middle) const {
+  std::vector<svg::Point> way_about(const MagnifiedJoint& magnified, const svg::Point& middle) const {
     const double scale = scale_ * magnified.factor;
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const auto& e : magnified.orbit) points.push_back({middle.x + scale * e[0], middle.y - scale * e[1]});
     return points;
   }
-  std::vector<Point> way_along(const MagnifiedJoint& magnified, const Point& middle, double room) const {
+  std::vector<svg::Point> way_along(const MagnifiedJoint& magnified, const svg::Point& middle, double room) const {
     if (magnified.orbit.empty()) return {};
     const auto [first, last] =
         std::ranges::minmax(magnified.orbit, {}, [](const std::array<double, 2>& e) { return e[0]; });
     const double stroke = last[0] - first[0], from = 0.5 * (first[0] + last[0]);
     const double along = stroke * scale_ > room ? room / stroke : scale_;
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const auto& e : magnified.orbit) {
       points.push_back({middle.x + along * (e[0] - from), middle.y - scale_ * magnified.factor * e[1]});
     }
@@ -303,7 +303,7 @@ class Drawing {
   void draw_joint(const JointElement& joint) {
     if (joint.gear >= 0) return draw_gear(joint);
     const Marker &a = marker(joint.marker_a), &b = marker(joint.marker_b);
-    const Point from = page(world(a)), to = page(world(b));
+    const svg::Point from = page(world(a)), to = page(world(b));
     const bool apart = length(to - from) > 6.0;
     const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
     for (const auto& [one, at] : {std::pair(&a, from), std::pair(&b, to)}) {
@@ -340,8 +340,8 @@ class Drawing {
   /// Pitch circles about the two joints, which touch, and a line between them.
   void draw_gear(const JointElement& joint) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(joint.gear)];
-    const Point first = world_place(gear.first), second = world_place(gear.second), from = page(first),
-                to = page(second);
+    const svg::Point first = world_place(gear.first), second = world_place(gear.second), from = page(first),
+                     to = page(second);
     PitchRadii radii = pitch_radii(length(second - first), ratio_of_wheels(model_, gear));
     const bool drawn = has_pitch_circles(gear, radii) && scale_ * std::min(radii.first, radii.second) > least_rim;
     radii = drawn ? PitchRadii{scale_ * radii.first, scale_ * radii.second} : PitchRadii{rim, rim};
@@ -361,13 +361,13 @@ class Drawing {
   }
 
   /// Where a joint moves its second body.
-  Point world_place(int index) const {
+  svg::Point world_place(int index) const {
     const JointElement& joint = model_.joints[static_cast<std::size_t>(index)];
     return joint.gear >= 0 ? world_place(model_.gears[static_cast<std::size_t>(joint.gear)].second)
                            : world(marker(joint.marker_b));
   }
 
-  void draw_pin(const JointElement& joint, const Point& at) {
+  void draw_pin(const JointElement& joint, const svg::Point& at) {
     if (joint.ideal_layout.coordinate == Coordinate::angle) {
       if (joint.has_play) out_.circle(at, 9.0, "fill=\"none\" stroke=\"#cc3311\" stroke-width=\"1.5\"");
       out_.circle(at, 5.5, "fill=\"white\" stroke=\"black\" stroke-width=\"1.5\"");
@@ -377,13 +377,13 @@ class Drawing {
     out_.block(at, 5.0);
   }
 
-  void draw_slide(const Point& from, const Point& to, double along, double turn, bool on_ground) {
-    const Point direction{std::cos(along), -std::sin(along)}, normal{direction.y, -direction.x};
+  void draw_slide(const svg::Point& from, const svg::Point& to, double along, double turn, bool on_ground) {
+    const svg::Point direction{std::cos(along), -std::sin(along)}, normal{direction.y, -direction.x};
     const double reach = std::max(40.0, length(to - from) + 25.0);
     out_.line(from - 30.0 * direction, from + reach * direction, "stroke=\"black\" stroke-width=\"0.8\"");
     if (on_ground) {
       for (double s = -25.0; s < reach; s += 8.0) {
-        const Point foot = from + s * direction;
+        const svg::Point foot = from + s * direction;
         out_.line(foot, foot - 5.0 * (direction + normal), "stroke=\"black\" stroke-width=\"0.6\"");
       }
     }
@@ -395,7 +395,7 @@ class Drawing {
   }
 
   void draw_force(const AppliedForce& force) {
-    const Point at = page(world(marker(force.marker)));
+    const svg::Point at = page(world(marker(force.marker)));
     out_.circle(at, 8.0, "fill=\"none\" stroke=\"#ee7733\" stroke-width=\"1.5\" stroke-dasharray=\"2 2\"");
     out_.label(force.name, at, "font-style=\"italic\"");
   }
@@ -405,10 +405,10 @@ class Drawing {
     for (const Marker& one : model_.markers) held.insert(one.name);
     for (const Marker& one : model_.frames) {
       if (is_com(one) || is_origin(one)) continue;
-      const Point at = page(world(one));
+      const svg::Point at = page(world(one));
       const double angle = angle_of(one);
       if (!held.contains(one.name)) {
-        const Point x{std::cos(angle), -std::sin(angle)}, y{-std::sin(angle), -std::cos(angle)};
+        const svg::Point x{std::cos(angle), -std::sin(angle)}, y{-std::sin(angle), -std::cos(angle)};
         out_.line(at, at + 14.0 * x, "stroke=\"#cc3311\"");
         out_.line(at, at + 14.0 * y, "stroke=\"#228833\"");
         out_.block(at, 3.0);
@@ -425,7 +425,7 @@ class Drawing {
   JointShapes shapes_;
   double scale_ = 1.0, height_ = least_height;
   double largest_pitch_ = 0.0;  // [m]
-  Point middle_;
+  svg::Point middle_;
   svg::Page out_;
 };
 
@@ -444,7 +444,7 @@ std::array<double, 3> world_position(const System& system, const Marker& marker,
 
 std::string mechanism_svg(const System& system, const MechanismPicture& picture) {
   if (system.model().space == Space::spatial) return spatial_svg(system, picture);
-  return Drawing(system, picture).text();
+  return MechanismDrawing(system, picture).text();
 }
 
 }  // namespace freeplay

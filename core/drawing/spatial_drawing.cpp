@@ -17,27 +17,23 @@
 namespace freeplay {
 namespace {
 
-using svg::Point;
 using Vector = Eigen::Vector3d;
 
-constexpr double panel_width = 580.0, most_height = 560.0, least_height = 240.0, title_height = 18.0;
-constexpr double least_rim = 8.0, most_rim = 120.0;  // radii of pitch circles that are drawn true
-constexpr double margin = 52.0, axes_width = 80.0;   // the arrows of the axes stand left of everything else
 // More names than these are in the isometric view alone.
 constexpr std::size_t few = 16;
 
 /// The smallest rectangle about some points.
 struct Extent {
-  Point low, high;
+  svg::Point low, high;
   bool empty = true;
 
-  void add(const Point& p) {
-    low = empty ? p : Point{std::min(low.x, p.x), std::min(low.y, p.y)};
-    high = empty ? p : Point{std::max(high.x, p.x), std::max(high.y, p.y)};
+  void add(const svg::Point& p) {
+    low = empty ? p : svg::Point{std::min(low.x, p.x), std::min(low.y, p.y)};
+    high = empty ? p : svg::Point{std::max(high.x, p.x), std::max(high.y, p.y)};
     empty = false;
   }
-  Point middle() const { return 0.5 * (low + high); }
-  Point size() const { return high - low; }
+  svg::Point middle() const { return 0.5 * (low + high); }
+  svg::Point size() const { return high - low; }
 };
 
 std::string axis_word(const Vector& axis) {
@@ -47,9 +43,9 @@ std::string axis_word(const Vector& axis) {
   return "";
 }
 
-class Drawing {
+class SpatialDrawing {
  public:
-  Drawing(const System& system, const MechanismPicture& picture)
+  SpatialDrawing(const System& system, const MechanismPicture& picture)
       : picture_(picture),
         scene_(system, picture.q),
         given_(system, picture.q),
@@ -73,6 +69,9 @@ class Drawing {
   }
 
  private:
+  static constexpr double panel_width = 580.0, most_height = 560.0, least_height = 240.0, title_height = 18.0;
+  static constexpr double least_rim = 8.0, most_rim = 120.0;  // radii of pitch circles that are drawn true
+  static constexpr double margin = 52.0, axes_width = 80.0;   // the arrows of the axes stand left of everything else
   // --- views -----------------------------------------------------------------------------------------------------
 
   void choose_views() {
@@ -195,7 +194,7 @@ class Drawing {
 
   /// Where the file gives the pose of a body that stands elsewhere: pale and dashed.
   void draw_as_given(BodyId id) {
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const Vector& p : given_scene_.points_of(id)) points.push_back(view_->page(p));
     page_.shape(
         "<path class=\"given\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"4\" stroke-opacity=\"0.35\" "
@@ -206,7 +205,7 @@ class Drawing {
   /// At another instant.
   void draw_pale(const SpatialScene& other) {
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      std::vector<Point> points;
+      std::vector<svg::Point> points;
       for (const Vector& p : other.points_of(static_cast<BodyId>(b))) points.push_back(view_->page(p));
       page_.shape(
           "<path class=\"other\" d=\"{} Z\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" stroke-opacity=\"0.25\" "
@@ -216,9 +215,9 @@ class Drawing {
   }
 
   void draw_trace(const Trace& trace) {
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const auto& p : trace.points) {
-      const Point at = view_->page(Vector(p.data()));
+      const svg::Point at = view_->page(Vector(p.data()));
       if (points.empty() || svg::length(at - points.back()) > 0.3) points.push_back(at);
     }
     if (points.size() == 1) points.push_back(points.front());
@@ -229,10 +228,10 @@ class Drawing {
 
   /// `nearness` is 0 for the furthest and 1 for the nearest.
   void draw_body(BodyId id, double nearness) {
-    std::vector<Point> points;
+    std::vector<svg::Point> points;
     for (const Vector& p : scene_.points_of(id)) points.push_back(view_->page(p));
-    const Point centre = points.front();
-    const std::vector<Point> outline = svg::hull(points);
+    const svg::Point centre = points.front();
+    const std::vector<svg::Point> outline = svg::hull(points);
     const std::string path = svg::path(outline);
     page_.shape(
         "<path d=\"{} Z\" fill=\"white\" fill-opacity=\"0.5\" stroke=\"white\" stroke-width=\"11\" "
@@ -249,7 +248,7 @@ class Drawing {
     name(model_.bodies[static_cast<std::size_t>(id)].name, centre, "font-weight=\"bold\"");
   }
 
-  void name(const std::string& text, const Point& at, const char* style) {
+  void name(const std::string& text, const svg::Point& at, const char* style) {
     if (isometric() || model_.bodies.size() + model_.joints.size() <= few) page_.label(text, at, style);
   }
   bool isometric() const { return view_->name() == "isometric"; }
@@ -258,7 +257,7 @@ class Drawing {
     const JointElement& one = scene_.joint(index);
     if (one.gear >= 0) return draw_gear(one);
     const Marker &a = scene_.marker(one.marker_a), &b = scene_.marker(one.marker_b);
-    const Point from = view_->page(scene_.world(a)), to = view_->page(scene_.world(b));
+    const svg::Point from = view_->page(scene_.world(a)), to = view_->page(scene_.world(b));
     const JointFreedom& freedom = scene_.freedom(index);
     if (a.body == ground) page_.hatch(from);
     if (b.body == ground) page_.hatch(to);
@@ -277,7 +276,7 @@ class Drawing {
     }
     // A slide between two moving bodies is drawn between their ends, which other joints may hold.
     const bool between = freedom.slides == 1 && freedom.turns == 0 && a.body != ground && b.body != ground;
-    const Point at = between ? 0.5 * (from + to) : to;
+    const svg::Point at = between ? 0.5 * (from + to) : to;
     draw_symbol(freedom, scene_.axes_of(a), from, to, at);
     if (one.has_play) page_.circle(at, 10.0, "fill=\"none\" stroke=\"#cc3311\" stroke-width=\"1.5\"");
     name(one.name, at, "");
@@ -285,11 +284,11 @@ class Drawing {
 
   /// What is left free: a bar turns about its axis, a block slides on its rail, a plate on its plane, a cross turns
   /// about its arms, a ball about all; a cube is fast.
-  void draw_symbol(const JointFreedom& freedom, const Eigen::Matrix3d& axes, const Point& from, const Point& to,
-                   const Point& at) {
+  void draw_symbol(const JointFreedom& freedom, const Eigen::Matrix3d& axes, const svg::Point& from,
+                   const svg::Point& to, const svg::Point& at) {
     if (freedom.slides == 1) {
-      const Point along = view_->flat(freedom.slide);
-      const Point low = from - 24.0 * along, high = to + 24.0 * along;
+      const svg::Point along = view_->flat(freedom.slide);
+      const svg::Point low = from - 24.0 * along, high = to + 24.0 * along;
       page_.line(low, high, "stroke=\"black\" stroke-width=\"1.2\"");
       page_.shun(low, high);
     }
@@ -319,9 +318,9 @@ class Drawing {
     return edges;
   }
 
-  void draw_cross(const Eigen::Matrix3d& edges, const Point& at) {
+  void draw_cross(const Eigen::Matrix3d& edges, const svg::Point& at) {
     for (int k = 0; k < 2; ++k) {
-      const Point arm = 9.0 * view_->flat(edges.col(k));
+      const svg::Point arm = 9.0 * view_->flat(edges.col(k));
       page_.line(at - arm, at + arm, "stroke=\"black\" stroke-width=\"3\" stroke-linecap=\"round\"");
       for (const double side : {-1.0, 1.0})
         page_.circle(at + side * arm, 2.6, "fill=\"white\" stroke=\"black\" stroke-width=\"1.1\"");
@@ -330,14 +329,14 @@ class Drawing {
 
   void draw_gear(const JointElement& one) {
     const Gear& gear = model_.gears[static_cast<std::size_t>(one.gear)];
-    const Point from = view_->page(scene_.place(gear.first)), to = view_->page(scene_.place(gear.second));
+    const svg::Point from = view_->page(scene_.place(gear.first)), to = view_->page(scene_.place(gear.second));
     const JointFreedom &first = scene_.freedom(gear.first), &second = scene_.freedom(gear.second);
     const double apart = (scene_.place(gear.second) - scene_.place(gear.first)).norm();
     const bool parallel = first.turns == 1 && second.turns == 1 && first.turn.cross(second.turn).norm() < 1e-6;
     const PitchRadii radii = pitch_radii(view_->scale() * apart, ratio_of_wheels(model_, gear));
     const bool seen =
         parallel && std::min(radii.first, radii.second) > least_rim && std::max(radii.first, radii.second) < most_rim;
-    const std::pair<Point, const JointFreedom*> wheels[] = {{from, &first}, {to, &second}};
+    const std::pair<svg::Point, const JointFreedom*> wheels[] = {{from, &first}, {to, &second}};
     for (const auto& [at, freedom] : wheels) {
       const double radius = !seen ? 12.0 : freedom == &first ? radii.first : radii.second;
       if (freedom->turns == 1) {
@@ -352,7 +351,7 @@ class Drawing {
   }
 
   void draw_force(const AppliedForce& force) {
-    const Point at = view_->page(scene_.world(scene_.marker(force.marker)));
+    const svg::Point at = view_->page(scene_.world(scene_.marker(force.marker)));
     page_.circle(at, 8.0, "fill=\"none\" stroke=\"#ee7733\" stroke-width=\"1.5\" stroke-dasharray=\"2 2\"");
     name(force.name, at, "font-style=\"italic\"");
   }
@@ -362,7 +361,7 @@ class Drawing {
     for (const Marker& one : model_.markers) held.insert(one.name);
     for (const Marker& one : model_.frames) {
       if (SpatialScene::is_own(one)) continue;
-      const Point at = view_->page(scene_.world(one));
+      const svg::Point at = view_->page(scene_.world(one));
       if (!held.contains(one.name)) {
         constexpr const char* styles[] = {"stroke=\"#cc3311\"", "stroke=\"#228833\"", "stroke=\"#4477aa\""};
         const Eigen::Matrix3d axes = scene_.axes_of(one);
@@ -390,7 +389,7 @@ class Drawing {
 }  // namespace
 
 std::string spatial_svg(const System& system, const MechanismPicture& picture) {
-  return Drawing(system, picture).text();
+  return SpatialDrawing(system, picture).text();
 }
 
 }  // namespace freeplay
