@@ -6,6 +6,7 @@
 #include <numbers>
 #include <numeric>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include <Eigen/Core>
@@ -61,9 +62,23 @@ class Examination {
  private:
   bool doubt(const char* id, const std::string& message, const std::string& name, const Location& location) {
     if (structure_.doubts.size() >= Structure::most_doubts) return false;
-    const std::string own = name.substr(name.rfind('.') + 1);  // instances declare it without their name
+    std::string own = name;
+    if (is_part_of_entry(name, location)) own.erase(own.rfind('.'));
+    own.erase(0, own.rfind('.') + 1);  // instances declare it without their name
     structure_.doubts.push_back({id, message, location, std::max(character_count(own), 1)});
     return true;
+  }
+  // Entries of several joints, as of the pins of a cross, name them by a word after their own.
+  bool is_part_of_entry(std::string_view name, const Location& location) const {
+    const std::size_t dot = name.rfind('.');
+    if (dot == std::string_view::npos) return false;
+    const std::string_view entry = name.substr(0, dot + 1);
+    return std::ranges::any_of(model_.joints, [&](const JointElement& other) {
+      return other.name != name && other.name.starts_with(entry) &&
+             other.name.find('.', dot + 1) == std::string::npos &&
+             std::tie(other.location.file, other.location.line, other.location.column) ==
+                 std::tie(location.file, location.line, location.column);
+    });
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }

@@ -162,6 +162,8 @@ class UniversalWithPlay(ModelTest):
         self.assertIn("'coordinate: first' or 'coordinate: second'", self.refusal(ideal, id="wrong-type", line=9)[0]["suggestion"])
         deep = self.facts(universal(block(rest=", initial: {eccentricity: [0, 0, 1 mm]}")))["messages"]
         self.assertEqual([("doubtful-clearance", 8)] * 2, [(message["id"], message["line"]) for message in deep])
+        shown = self.freeplay("validate", "m.yaml")[1].splitlines()
+        self.assertEqual(["      |   ^"] * 2, [line for line in shown if "^" in line], "of the name in the file")
 
 
 if __name__ == "__main__":
