@@ -273,8 +273,9 @@ bool StepEvents::first_crossing(const State& before, const Evaluation& e_before,
       const Hermite first{sign * start_[event], sign * start_rate_[event] * half, sign * gm[i], sign * rm[i] * half};
       const Hermite second{first.value1, first.slope1, sign * end_[event], sign * end_rate_[event] * half};
       double at = 2.0;
-      // A function that rests at its zero crosses it by rounding all the time.
-      const bool below = std::max(first.value1, second.value1) <= event_rounding;
+      // A function that rests at its zero crosses it by rounding all the time; one that comes from below arrives there.
+      const bool below =
+          std::max(first.value1, second.value1) <= event_rounding && std::min(first.value0, first.value1) >= -tolerance;
       if (below && !rises_above(first, tolerance) && !rises_above(second, tolerance)) continue;
       if (const auto s = first_rise(first, 0.0)) {
         at = 0.5 * *s;

@@ -114,6 +114,11 @@ class EventsAtTheEndsOfSteps(ModelTest):
         bearing = ("revolute, axis: [0, 0, 1]", "length: 20 mm, bearing_radius: 10 mm, radial_clearance: " + PLAY, IN_SPACE)
         cases += [(*joint, simulation, "[0, 0, 0]", True) for joint in (ball, bearing)
                   for simulation in (steps + "bathe", "accuracy: 1 nm")]
+        # The penetration ends at its zero to rounding, or rises from there and back within one step.
+        for frame, simulation in (("[1.0, 0.0625, 0.375]", "accuracy: 1 um, integrator: generalized-alpha"),
+                                  ("[0, -0.5, 1.0]", "accuracy: 0.1 nm, integrator: verner7"),
+                                  ("[-0.5, 0.125, 0.125]", "accuracy: 0.1 nm, integrator: verner6")):
+            cases.append((*ball, simulation, frame, True))
         for case in cases:
             with self.subTest(case=case):
                 self.run_model(self.moved(*case))
