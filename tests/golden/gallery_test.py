@@ -167,6 +167,22 @@ class Gallery(ProgramTest):
         self.assertEqual(0, min(map(min, tensions)))
         self.assertLess(abs(columns["joint.motor.speed"][-1] / columns["joint.fan.speed"][-1] - 3), 1e-2)
 
+    def test_cables_of_a_robot_pull_alone_and_carry_it_in_the_end(self):
+        columns = self.run_file("cable-robot")
+        names = [corner + "_" + side for corner in ("upper", "lower") for side in ("left", "right")]
+        slack = {name: columns["driver.%s.cable.force" % name].count(0) for name in names}
+        self.assertEqual([True, False, False, True], [slack[name] > 20 for name in names])
+        self.assertEqual(0, max(max(columns["driver.%s.cable.force" % name]) for name in names))
+        # At rest the pulls balance the weight of the platform and of its hooks.
+        pull = [0, 0]
+        for name in names:
+            post = (1.2 if "right" in name else -1.2, 0.8 if "upper" in name else -0.8)
+            way = [columns["body.%s.hook.%s" % (name, axis)][-1] - p for axis, p in zip("xy", post)]
+            for k in (0, 1):
+                pull[k] += columns["driver.%s.cable.force" % name][-1] * way[k] / math.hypot(*way)
+        self.assertAlmostEqual(0, pull[0], delta=1e-3)
+        self.assertAlmostEqual(9.81 * (12 + 4 * 0.05), pull[1], delta=1e-3)
+
     def test_the_pin_of_a_planet_bears_what_both_of_its_meshes_press_across(self):
         columns = self.run_file("gear-train")
         self.assert_all(columns, lambda at: at("body.sun.omega") - 3.6 * at("body.arm.omega"), 1e-9)
