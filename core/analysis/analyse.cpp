@@ -17,14 +17,17 @@ namespace {
 AnalysisTable workspace(IdealMechanism& mechanism, const AnalysisRequest& request, const RequestedStations& stations,
                         const Tick& tick, const TickOf& tick_of) {
   AnalysisTable table = workspace_rows(mechanism, stations.all(), stations.given(), request.threads, tick);
-  const auto* grid = stations.grid();
-  if (grid == nullptr || !stations.given()[0] || !stations.given()[1] || (*grid)[2].count != 1) return table;
-  const WorkspaceShape shape = workspace_shape(mechanism, stations.all(), {(*grid)[0], (*grid)[1], (*grid)[2]},
+  if (stations.grid() == nullptr) return table;
+  const PoseForm& form = mechanism.form();
+  const std::vector<std::size_t> lengths = lengths_of_grid(form, *stations.grid(), stations.given());
+  if (lengths.empty()) return table;
+  const WorkspaceShape shape = workspace_shape(mechanism, stations.all(), *stations.grid(), lengths,
                                                tick_of("edges searched", stations.all().size()));
-  table.summary["area"] = shape.area;
+  table.summary[lengths.size() == 2 ? "area" : "volume"] = shape.size;
   table.summary["regions"] = shape.regions;
   table.summary["holes"] = shape.holes;
-  table.summary["boundary"] = shape.boundary;
+  for (std::size_t i = 0; i < shape.bounds.size(); ++i) table.summary["bounds"][form.words[i]] = shape.bounds[i];
+  if (lengths.size() == 2) table.summary["boundary"] = shape.boundary;
   return table;
 }
 

@@ -20,6 +20,12 @@ Components PoseForm::all() const {
   return out;
 }
 
+bool turns_whole(const PoseForm& form, const Components& given) {
+  std::size_t turns = 0;
+  for (std::size_t i = form.lengths; i < form.size(); ++i) turns += given[i] ? 1 : 0;
+  return turns == 0 || turns == form.size() - form.lengths;
+}
+
 std::string enumeration(std::span<const char* const> words) {
   std::string out;
   for (std::size_t i = 0; i < words.size(); ++i) {

@@ -38,6 +38,9 @@ struct PoseForm {
 };
 const PoseForm& pose_form(Space space);
 
+/// Do the given numbers hold all angles or none? Changes of single angles in space are no changes of a rotation vector.
+bool turns_whole(const PoseForm& form, const Components& given);
+
 /// "x, y and angle"
 std::string enumeration(std::span<const char* const> words);
 

@@ -26,7 +26,7 @@ RequestedStations::RequestedStations(IdealMechanism& mechanism, const AnalysisRe
   if (request.branches) find_branches();
   check_reach();
   check_inputs();
-  if (request.kind == AnalysisKind::singularity) check_outputs();
+  if (request.kind == AnalysisKind::singularity || request.kind == AnalysisKind::workspace) check_outputs();
 }
 
 // Legs in closed form leave the platform all three.
@@ -53,15 +53,18 @@ void RequestedStations::check_inputs() {
               section().joints_location.value_or(mechanism_.platform().location));
 }
 
-/// Changes of single angles in space are no changes of a rotation vector.
-void RequestedStations::check_outputs() const {
-  int turns = 0;
+void RequestedStations::check_outputs() {
+  if (turns_whole(form(), given_)) return;
   std::vector<const char*> words;
   for (std::size_t i = 0; i < form().size(); ++i) {
     if (given_[i]) words.push_back(form().words[i]);
-    if (given_[i] && form().is_turn(i)) ++turns;
   }
-  if (turns == 0 || turns == static_cast<int>(form().size() - form().lengths)) return;
+  if (request_.kind == AnalysisKind::workspace) {
+    warnings_.push_back(
+        fmt::format("the condition is known with all angles as outputs or with none, not with {}: it is empty",
+                    enumeration(words)));
+    return;
+  }
   throw Error(Error::Category::input, "type-space",
               fmt::format("singularities in space are looked for with all angles as outputs or with none, not with {}",
                           enumeration(words)),

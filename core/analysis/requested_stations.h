@@ -37,7 +37,7 @@ class RequestedStations {
 
   void find_freedoms();
   void check_inputs();
-  void check_outputs() const;
+  void check_outputs();
   void warn_idle_elbow();
   void find();
   void at_poses();

@@ -187,9 +187,9 @@ AnalysisTable workspace_rows(IdealMechanism& mechanism, const std::vector<Statio
       const Station& station = stations[i];
       const FramePose pose = shown_pose(station, looker.solver);
       double legs = input_count(mechanism), condition = nan;
-      if (station.reachable) {
+      if (station.reachable && turns_whole(mechanism.form(), given)) {
         condition = singularity_of(looker.look(station), mechanism.length()).condition;
-      } else {
+      } else if (!station.reachable) {
         Unreachable why;
         legs = looker.solver.legs_in_reach(station.demand, start, why);
       }

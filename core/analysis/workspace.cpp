@@ -1,16 +1,38 @@
 #include "analysis/workspace.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/error.h"
 
 namespace freeplay {
 namespace {
 
-/// Grid of x and y, y fastest.
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Points of a grid of any number of axes, the last fastest.
 class Cells {
  public:
-  Cells(const std::vector<Station>& stations, long nx, long ny) : stations_(stations), nx_(nx), ny_(ny) {}
+  Cells(const std::vector<Station>& stations, std::vector<long> counts)
+      : stations_(stations), counts_(std::move(counts)), strides_(counts_.size(), 1) {
+    for (std::size_t k = counts_.size(); k-- > 1;) strides_[k - 1] = strides_[k] * counts_[k];
+  }
+
+  /// Calls visit(neighbour) for those ahead of a point along each axis and, with `both`, for those behind it. True when
+  /// the point is on the border.
+  template <class Visit>
+  bool for_each_neighbour(std::size_t point, bool both, const Visit& visit) const {
+    bool border = false;
+    for (std::size_t k = counts_.size(); k-- > 0;) {
+      const long place = static_cast<long>(point) / strides_[k] % counts_[k];
+      border = border || place == 0 || place + 1 == counts_[k];
+      if (both && place > 0) visit(point - static_cast<std::size_t>(strides_[k]));
+      if (place + 1 < counts_[k]) visit(point + static_cast<std::size_t>(strides_[k]));
+    }
+    return border;
+  }
 
   /// Regions of one sort, and how many of them do not touch the border.
   std::pair<int, int> regions(bool reachable) const {
@@ -22,17 +44,14 @@ class Cells {
       std::vector<std::size_t> open{first};
       seen[first] = 1;
       while (!open.empty()) {
-        const long i = static_cast<long>(open.back());
+        const std::size_t here = open.back();
         open.pop_back();
-        const long x = i / ny_, y = i % ny_;
-        border = border || x == 0 || y == 0 || x == nx_ - 1 || y == ny_ - 1;
-        for (const auto& [dx, dy] : {std::pair{1L, 0L}, {-1L, 0L}, {0L, 1L}, {0L, -1L}}) {
-          if (x + dx < 0 || x + dx >= nx_ || y + dy < 0 || y + dy >= ny_) continue;
-          const auto next = static_cast<std::size_t>((x + dx) * ny_ + y + dy);
-          if (seen[next] || stations_[next].reachable != reachable) continue;
+        const bool ends = for_each_neighbour(here, true, [&](std::size_t next) {
+          if (seen[next] || stations_[next].reachable != reachable) return;
           seen[next] = 1;
           open.push_back(next);
-        }
+        });
+        border = border || ends;
       }
       ++count;
       inner += border ? 0 : 1;
@@ -42,12 +61,17 @@ class Cells {
 
  private:
   const std::vector<Station>& stations_;
-  long nx_, ny_;
+  std::vector<long> counts_, strides_;
 };
+
+double spacing(const GridValues& axis) {
+  return axis.count > 1 ? std::abs(axis.value(axis.count - 1) - axis.value(0)) / static_cast<double>(axis.count - 1)
+                        : 0.0;
+}
 
 Demand between(const Demand& a, const Demand& b, double s) {
   Demand out = a;
-  for (std::size_t i = 0; i < 3; ++i) out.pose[i].value += s * (b.pose[i].value - a.pose[i].value);
+  for (std::size_t i = 0; i < out.pose.size(); ++i) out.pose[i].value += s * (b.pose[i].value - a.pose[i].value);
   return out;
 }
 
@@ -68,37 +92,73 @@ double end_of_reach(PostureSolver& solver, const Demand& good, const Posture& at
   return inside;
 }
 
+/// The same where no part stands by itself, to two millionths: where the way that is followed ends.
+double end_of_way(PostureSolver& solver, const Demand& good, const Posture& at_good, const Demand& bad) {
+  double last = 0.0;
+  Posture trial;
+  Unreachable why;
+  const auto way = [&](double share) {
+    if (share < 1.0) last = share;
+    return between(good, bad, share);
+  };
+  return solver.reach(way, at_good, trial, why) ? 1.0 : last;
+}
+
 }  // namespace
 
+std::vector<std::size_t> lengths_of_grid(const PoseForm& form, std::span<const GridValues> axes,
+                                         const Components& given) {
+  std::vector<std::size_t> lengths;
+  for (std::size_t i = 0; i < form.size(); ++i) {
+    const bool runs = form.lengths == 2 && i < 2 ? given[i] : axes[i].count > 1;
+    if (!runs) continue;
+    if (form.is_turn(i)) return {};
+    lengths.push_back(i);
+  }
+  if (lengths.size() < 2) lengths.clear();
+  return lengths;
+}
+
 WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Station>& stations,
-                               const std::array<GridValues, 3>& axes, const Tick& tick) {
+                               std::span<const GridValues> axes, const std::vector<std::size_t>& lengths,
+                               const Tick& tick) {
   WorkspaceShape shape;
-  const long nx = axes[0].count, ny = axes[1].count;
-  const Cells cells(stations, nx, ny);
+  std::vector<long> counts;
+  shape.size = static_cast<double>(std::ranges::count(stations, true, &Station::reachable));
+  for (const std::size_t axis : lengths) {
+    counts.push_back(axes[axis].count);
+    shape.size *= spacing(axes[axis]);
+  }
+  const Cells cells(stations, counts);
   shape.regions = cells.regions(true).first;
   shape.holes = cells.regions(false).second;
-  const auto spacing = [](const GridValues& axis) {
-    return axis.count > 1 ? std::abs(axis.value(axis.count - 1) - axis.value(0)) / static_cast<double>(axis.count - 1)
-                          : 0.0;
-  };
-  long reachable = 0;
   PostureSolver solver(mechanism);
-  for (long i = 0; i < nx * ny; ++i) {
-    const Station& station = stations[static_cast<std::size_t>(i)];
-    reachable += station.reachable ? 1 : 0;
+  const std::size_t numbers = mechanism.form().lengths;
+  const bool follows =
+      numbers == 3 && !stations.empty() && count(stations.front().demand.given) < mechanism.form().freedoms();
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Station& station = stations[i];
     if (tick) tick(1);
-    for (const long next : {i % ny + 1 < ny ? i + 1 : -1, i + ny < nx * ny ? i + ny : -1}) {
-      if (next < 0) continue;
-      const Station& other = stations[static_cast<std::size_t>(next)];
-      if (station.reachable == other.reachable) continue;
+    if (station.reachable) {
+      const FramePose here = solver.frame(station.posture);
+      shape.bounds.resize(numbers, {infinity, -infinity});
+      for (std::size_t k = 0; k < numbers; ++k) {
+        const double x = station.demand.given[k] ? station.demand.pose[k].value : here[k];
+        shape.bounds[k] = {std::min(shape.bounds[k][0], x), std::max(shape.bounds[k][1], x)};
+      }
+    }
+    if (lengths.size() > 2) continue;  // a surface of too many points
+    cells.for_each_neighbour(i, false, [&](std::size_t next) {
+      const Station& other = stations[next];
+      if (station.reachable == other.reachable) return;
       const Station& good = station.reachable ? station : other;
       const Station& bad = station.reachable ? other : station;
-      const double share = end_of_reach(solver, good.demand, good.posture, bad.demand);
+      const double share = (follows ? end_of_way : end_of_reach)(solver, good.demand, good.posture, bad.demand);
       const Demand end = between(good.demand, bad.demand, share);
-      shape.boundary.push_back({end.pose[0].value, end.pose[1].value});
-    }
+      std::vector<double>& point = shape.boundary.emplace_back();
+      for (std::size_t k = 0; k < numbers; ++k) point.push_back(end.pose[k].value);
+    });
   }
-  shape.area = static_cast<double>(reachable) * spacing(axes[0]) * spacing(axes[1]);
   return shape;
 }
 

@@ -69,7 +69,6 @@ int analyze(const AnalyzeOptions& options, const CommonOptions& common) {
   }
   LoadedModel loaded = load_model(options.model, build_options(options.build), loading(common));
   if (!loaded.model) return report_failure(loaded.diagnostics, loaded.exit_code, common);
-  if (options.kind == "workspace") require_planar(loaded, "analyze workspace");
   if (options.branches) require_planar(loaded, "--branches");
   if (!options.elbow.empty()) require_planar(loaded, "--elbow");
   AnalysisResult result;

@@ -267,9 +267,10 @@ class MapDrawing {
           px(left), px(at_y(y.ticks[i])), px(left - 9.0), px(at_y(y.ticks[i]) + 4.0), y.labels[i]);
     }
     body_ += fmt::format(
-        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">x [{}]</text>\n<text transform=\"translate({},{}) "
-        "rotate(-90)\" text-anchor=\"middle\">y [{}]</text>\n",
-        px(left + 0.5 * width_), px(top + height_ + 38.0), x.unit, px(24.0), px(top + 0.5 * height_), y.unit);
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{} [{}]</text>\n<text transform=\"translate({},{}) "
+        "rotate(-90)\" text-anchor=\"middle\">{} [{}]</text>\n",
+        px(left + 0.5 * width_), px(top + height_ + 38.0), escaped(map_.x_word), x.unit, px(24.0),
+        px(top + 0.5 * height_), escaped(map_.y_word), y.unit);
   }
 
   void draw_legend() {

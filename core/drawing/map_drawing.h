@@ -12,6 +12,7 @@ enum class MapPoint : char { good, unreachable, singular };
 /// Values on a grid of positions.
 struct PositionMap {
   std::string title, quantity;              ///< quantity: name and unit for the legend
+  std::string x_word = "x", y_word = "y";   ///< of the axes
   std::vector<double> x, y;                 ///< [m], in order
   std::vector<double> values;               ///< at x[i], y[j] in place i y.size() + j; only of good points
   std::vector<MapPoint> points;             ///< the same way

@@ -79,7 +79,6 @@ AskedAnalysis analyse_model(const OpenedModel& opened, const AnalysisWords& word
   try {
     const LoadedModel loaded = opened.read_again();  // a frame may be added
     Model& model = *loaded.model;
-    if (words.kind == "workspace") require_planar(loaded, "analyze workspace");
     if (words.branches) require_planar(loaded, "--branches");
     if (!words.elbow.empty()) require_planar(loaded, "--elbow");
     const TickOf tick_of = [&](const char*, std::size_t) { return [&](long) { pulse.beat(); }; };

@@ -125,7 +125,7 @@ void workspace(benchmark::State& state, const std::string& name) {
   const auto axes = square(0.3);
   for (auto _ : state) {
     const auto stations = on_grid(subject.mechanism, axes, whole, threads);
-    benchmark::DoNotOptimize(workspace_shape(subject.mechanism, stations, axes));
+    benchmark::DoNotOptimize(workspace_shape(subject.mechanism, stations, axes, {0, 1}));
   }
   state.SetItemsProcessed(state.iterations() * 200 * 200);
 }

@@ -1,11 +1,12 @@
-"""freeplay analyze on mechanisms in space: columns, poses, what stays planar. The numbers are those of a Stewart platform."""
+"""freeplay analyze on mechanisms in space: columns, poses, reach, what stays planar. Most numbers are those of a Stewart platform."""
 import csv
 import io
 import json
 import math
+import os
 import unittest
 
-from program import ProgramTest
+from program import MECHANISMS, ProgramTest
 
 HEIGHT, ROD, PLAY, BACKLASH = 0.6, 0.3, 1e-4, 5e-5
 BASE = [(0.5 * math.cos(math.radians(a)), 0.5 * math.sin(math.radians(a)), 0.0) for a in (10, 50, 130, 170, 250, 290)]
@@ -44,6 +45,21 @@ def leg_lengths(x, y, z, roll, pitch, yaw):
     turn = ((cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
             (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr), (-sp, cp * sr, cp * cr))
     return [math.dist([s + sum(r * c for r, c in zip(row, p)) for s, row in zip((x, y, z), turn)], b) for b, p in zip(BASE, TOP)]
+
+
+ARM = """freeplay: 1
+space: spatial
+bodies:
+  base: {mass: 1, inertia: [1, 1, 1]}
+  upper: {mass: 1, inertia: [1, 1, 1], frames: {end: [0.3, 0, 0]}}
+  lower: {mass: 1, inertia: [1, 1, 1], frames: {tip: [0.2, 0, 0]}}
+joints:
+  yaw: {type: revolute, between: [ground, base]}
+  lift: {type: revolute, between: [base, upper], axis: [0, -1, 0]}
+  bend: {type: revolute, between: [upper/end, lower], axis: [0, -1, 0]}
+initial: {joints: {yaw: 0, lift: 30 deg, bend: -60 deg}}
+analysis: {frame: lower/tip, joints: [yaw, lift, bend]}
+"""
 
 
 class AnalyzeInSpace(ProgramTest):
@@ -124,8 +140,7 @@ class AnalyzeInSpace(ProgramTest):
         self.assertEqual(26, len(self.read("map.csv").splitlines()))
 
     def test_what_is_planar_says_so(self):
-        for words, what in ((["workspace", "stewart.yaml", "--pose", "0,0,0.6"], "analyze workspace"),
-                            (["ik", "stewart.yaml", "--pose", "0,0,0.6", "--branches"], "--branches"),
+        for words, what in ((["ik", "stewart.yaml", "--pose", "0,0,0.6", "--branches"], "--branches"),
                             (["ik", "stewart.yaml", "--pose", "0,0,0.6", "--elbow", "1"], "--elbow")):
             self.assertIn(what + " works on planar models only, but 'stewart.yaml' is spatial [type-space]", self.message(*words, code=3))
         for key in ("grid: {x: [0, 1]}", "elbow: 1"):
@@ -141,20 +156,80 @@ class AnalyzeInSpace(ProgramTest):
                              ("x=0,y=0", "it must give x, y and z, and may give roll, pitch and yaw")):
             self.assertIn(answer, self.message("ik", "stewart.yaml", "--pose", pose, code=2))
 
-    def test_arm_reaches_as_far_as_its_links(self):
-        self.write("arm.yaml", """freeplay: 1
+    def workspace(self, *words):
+        return json.loads(self.freeplay("analyze", "workspace", *words, "--json")[0])
+
+    def test_an_arm_reaches_a_shell_of_two_spheres(self):
+        self.write("arm.yaml", ARM)
+        axes = [word for axis in "xyz" for word in ("--grid", axis + "=-0.54:0.54:7")]
+        document = self.workspace("arm.yaml", *axes)
+        self.assertEqual(["x", "y", "z", "roll", "pitch", "yaw", "reachable", "legs", "condition"], document["columns"])
+        for row in document["rows"]:
+            inside = 0.1 < math.hypot(*row[:3]) < 0.5
+            self.assertEqual((inside, inside), (row[6] == 1, row[8] is not None), row)
+        summary, count = document["summary"], sum(row[6] for row in document["rows"])
+        self.assertAlmostEqual(count * 0.18 ** 3, summary["volume"], 12)
+        self.assertEqual((1, 1), (summary["regions"], summary["holes"]))  # the middle, which the arm cannot fold back to
+        self.assertEqual({axis: [-0.36, 0.36] for axis in "xyz"},
+                         {axis: [round(end, 9) for end in ends] for axis, ends in summary["bounds"].items()})
+
+    def test_a_section_has_an_area_a_boundary_and_a_map(self):
+        self.write("arm.yaml", ARM)
+        section = ("--grid", "x=0.02:0.54:14", "--grid", "z=-0.54:0.54:28", "--grid", "y=0.15:0.15:1")
+        summary = self.workspace("arm.yaml", *section)["summary"]
+        self.assertAlmostEqual(math.pi / 2 * (0.25 - 0.0225), summary["area"], delta=0.01)
+        self.assertGreater(len(summary["boundary"]), 20)
+        for x, y, z in summary["boundary"]:
+            self.assertAlmostEqual(0.15, y, 12)
+            self.assertAlmostEqual(0.5, math.hypot(x, y, z), delta=1e-6)
+        self.freeplay("analyze", "workspace", "arm.yaml", *section, "--svg", "map.svg", "--out", "map.csv")
+        drawn = self.read("map.svg")
+        for words in (">x [mm]</text>", ">z [mm]</text>", "condition number, y 0.15 m", "out of reach"):
+            self.assertIn(words, drawn)
+        self.assertIn("on a grid of two of x, y and z", self.message("workspace", "arm.yaml", *section[:4], "--grid", "y=0:0.1:2", "--svg", "no.svg", code=2))
+
+    def test_a_delta_robot_reaches_where_every_arm_does(self):
+        base, top, arm, rod = 0.2, 0.05, 0.25, 0.55
+        document = self.workspace(os.path.join(MECHANISMS, "spatial", "delta.yaml"), "--frame", "platform", "--grid", "x=-0.45:0.45:5",
+                                  "--grid", "y=-0.4:0.4:5", "--grid", "z=-0.8:-0.2:4")
+        reached = set()
+        for row in document["rows"]:
+            legs = 0
+            for k in range(3):  # u cos(q) + h sin(q) = s of a corner u outside the shoulder, v beside and h below it
+                c, s = math.cos(2 * math.pi * k / 3), math.sin(2 * math.pi * k / 3)
+                u, v, h = row[0] * c + row[1] * s + top - base, row[1] * c - row[0] * s, -row[2]
+                legs += abs(u * u + v * v + h * h + arm * arm - rod * rod) <= 2 * arm * math.hypot(u, h)
+            self.assertEqual(legs == 3, row[6] == 1, row)
+            self.assertGreaterEqual(row[7], legs)  # by itself an arm may tilt the platform
+            reached.add(legs)
+        self.assertEqual({0, 1, 2, 3}, reached)
+
+    def test_a_single_angle_among_the_outputs_leaves_the_condition_open(self):
+        self.write("scara.yaml", """freeplay: 1
 space: spatial
 bodies:
-  base: {mass: 1, inertia: [1, 1, 1]}
   upper: {mass: 1, inertia: [1, 1, 1], frames: {end: [0.3, 0, 0]}}
-  lower: {mass: 1, inertia: [1, 1, 1], frames: {tip: [0.2, 0, 0]}}
+  lower: {mass: 1, inertia: [1, 1, 1], frames: {end: [0.2, 0, 0]}}
+  wrist: {mass: 1, inertia: [1, 1, 1]}
+  quill: {mass: 1, inertia: [1, 1, 1]}
 joints:
-  yaw: {type: revolute, between: [ground, base]}
-  lift: {type: revolute, between: [base, upper], axis: [0, -1, 0]}
-  bend: {type: revolute, between: [upper/end, lower], axis: [0, -1, 0]}
-initial: {joints: {yaw: 0, lift: 30 deg, bend: -60 deg}}
-analysis: {frame: lower/tip, joints: [yaw, lift, bend]}
+  first: {type: revolute, between: [ground, upper]}
+  second: {type: revolute, between: [upper/end, lower]}
+  hand: {type: revolute, between: [lower/end, wrist]}
+  stroke: {type: prismatic, axis: [0, 0, 1], between: [wrist, quill]}
+initial: {joints: {first: 0, second: 60 deg}}
+analysis: {frame: quill, joints: [first, second, hand, stroke]}
 """)
+        out, err = self.freeplay("analyze", "workspace", "scara.yaml", "--grid", "x=-0.56:0.56:5", "--grid", "y=-0.42:0.42:4", "--grid", "z=0.1:0.1:1",
+                                 "--grid", "yaw=0.5:0.5:1", "--svg", "map.svg")
+        self.assertIn("the condition is known with all angles as outputs or with none, not with x, y, z and yaw: it is empty", err)
+        rows = list(csv.DictReader(io.StringIO(out)))
+        for row in rows:
+            self.assertEqual(0.1 < math.hypot(float(row["x"]), float(row["y"])) < 0.5, row["reachable"] == "1")
+            self.assertEqual("", row["condition"])
+
+    def test_arm_reaches_as_far_as_its_links(self):
+        self.write("arm.yaml", ARM)
         row, = self.rows("ik", "arm.yaml", "--pose", "x=0.2,y=0.2,z=0.1")
         bend = -math.acos((0.2 ** 2 + 0.2 ** 2 + 0.1 ** 2 - 0.3 ** 2 - 0.2 ** 2) / (2 * 0.3 * 0.2))
         self.assertAlmostEqual(math.pi / 4, float(row["joint.yaw.angle"]), 10)

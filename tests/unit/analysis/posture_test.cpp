@@ -287,8 +287,8 @@ TEST(Workspace, CountsCellsRegionsAndHoles) {
   for (const int threads : {1, 3}) {
     const auto stations = on_grid(bench.mechanism, axes, {true, true, true}, threads);
     EXPECT_EQ(std::ranges::count(stations, true, &Station::reachable), 1446);
-    const WorkspaceShape shape = workspace_shape(bench.mechanism, stations, axes);
-    EXPECT_NEAR(shape.area, 0.1446, 1e-12);
+    const WorkspaceShape shape = workspace_shape(bench.mechanism, stations, axes, {0, 1});
+    EXPECT_NEAR(shape.size, 0.1446, 1e-12);
     EXPECT_EQ(shape.regions, 1);
     EXPECT_EQ(shape.holes, 0);
   }
@@ -300,7 +300,7 @@ TEST(Workspace, CountsCellsRegionsAndHoles) {
   m["l4"] = 0.2;
   Bench holes(platforms::legs_text(m));
   const auto stations = on_grid(holes.mechanism, axes, {true, true, true}, 2);
-  EXPECT_EQ(workspace_shape(holes.mechanism, stations, axes).holes, 3);
+  EXPECT_EQ(workspace_shape(holes.mechanism, stations, axes, {0, 1}).holes, 3);
 }
 
 }  // namespace
