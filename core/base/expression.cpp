@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <new>
 #include <unordered_set>
 #include <utility>
 
@@ -180,7 +181,9 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
 
 template <int depth>
 bool Expression::run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept {
-  Jet stack[depth];
+  // Operands are written before they are read: to zero all takes longer than most formulas.
+  alignas(Jet) std::byte room[depth * sizeof(Jet)];
+  Jet* const stack = new (room) Jet;
   Jet* top = stack;  // one past the last operand
   for (const Instruction& instruction : program_) {
     // What most formulas are made of, without a call; what is not finite, or has no value, is reported below.
