@@ -43,6 +43,7 @@ bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, F
     const double way = steps_to_begin * dt;
     if (sleep.now && !all_awake_ && candidate.room > way * candidate.speed) continue;
     sleep.now = false;
+    sleep.radius = 0.0;
     if (all_awake_ || e.acts[at(candidate.block)] != 0) continue;
     double distance = 0.0;
     const JointRecord& joint = joints_[candidate.joint];
@@ -52,6 +53,7 @@ bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, F
     const bool is_cubic = sleep.reach == Sleep::round;
     sleep.radius = (1.0 - (is_cubic ? rounding_off : no_cubic)) * distance;
     sleep.place(e.markers[at(candidate.marker_a)], e.markers[at(candidate.marker_b)], sleep.from);
+    if (std::isinf(dt)) continue;
     look(candidate, e);
     sleep.now = candidate.room > way * candidate.speed;
   }

@@ -64,7 +64,8 @@ bool StepAttempt::begin_steps(double dt, State& state) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   std::ranges::copy(run_.accepted.h(), state.h().begin());
   const Point here{run_.accepted.t(), run_.accepted.q(), run_.accepted.v(), run_.accepted.z(), run_.accepted.h()};
-  if (!run_.adaptive && !run_.sleeping.begin(dt, here, run_.e_accepted, run_.e_trial->fault)) {
+  // A step that the error chooses ends at events: there joints are asked for all but forces.
+  if (!run_.sleeping.begin(run_.adaptive ? unbounded : dt, here, run_.e_accepted, run_.e_trial->fault)) {
     return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
   }
   for (const int j : with_history_) {

@@ -10,8 +10,8 @@
 
 namespace freeplay {
 
-/// A sleeping joint: it is not asked for forces while its second marker stays within `radius` of `from` [m], as
-/// Joint::free_distance counts the way.
+/// Of a joint that is not asked for forces while its second marker stays within `radius` of `from` [m], 0 for none, as
+/// Joint::free_distance counts the way. Where it sleeps (`now`), it is asked for nothing else either.
 struct Sleep {
   bool now = false;
   double radius = 0.0, from[3] = {};

@@ -112,11 +112,13 @@ bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) co
   e.acting = 0;
   JointForces out;
   bool clean = false;  // zeroed for the first that is asked, and after those that wrote into it
-  for (std::size_t f = 0; f < blocks_.size(); ++f) {
-    const int j = blocks_[f].joint;
+  const std::span<const ForceBlock> blocks(blocks_);
+  const std::span<Sleep> sleeps = e.context == nullptr ? std::span<Sleep>() : std::span<Sleep>(e.context->sleeps);
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    const int j = blocks[f].joint;
     const JointRecord& joint = joints_[j];
-    if (e.context != nullptr && e.context->is_asleep(j)) {
-      Sleep& sleep = e.context->sleeps[at(j)];
+    if (at(j) < sleeps.size() && sleeps[at(j)].radius > 0.0) {
+      Sleep& sleep = sleeps[at(j)];
       if (!sleep.holds(e.markers[at(joint.marker_a)], e.markers[at(joint.marker_b)])) {
         sleep.left = true;
       } else if (!derivatives && e.acts[f] == 0) {
