@@ -5,9 +5,12 @@
 
 #include <fmt/format.h>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 constexpr double smallest_step = 1e-3;  // of the step asked for
+constexpr double largest_turn = 2.5;    // of a joint in one step [rad]: angles are continued over half turns
 
 long steps_between(double from, double to, double step) {
   return std::max(1L, std::lround(std::ceil((to - from) / step - 1e-6)));
@@ -51,8 +54,9 @@ bool FixedRun::step(double until) {
     leg_.dt = std::min(leg_.dt, until - run_.accepted.t());
   }
   double& dt = leg_.dt;
+  for (const double fastest = fastest_turn(); fastest * dt > largest_turn;) dt *= 0.5;
   for (;;) {
-    const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * smallest;
+    const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * std::min(smallest, dt);
     if (last) dt = leg_.goal - run_.accepted.t();
     step_corners_.list(leg_.goal);
     const double end = last ? leg_.goal : run_.accepted.t() + dt, corner = step_corners_.at(end);
@@ -82,6 +86,16 @@ bool FixedRun::step(double until) {
     }
     return accept(corner);
   }
+}
+
+// Of a joint whose turns are counted [rad/s].
+double FixedRun::fastest_turn() const {
+  double fastest = 0.0;
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const double rate = run_.system.layout().turn(j) < 0 ? 0.0 : std::abs(run_.e_accepted->coordinate_rate[at(j)]);
+    if (std::isfinite(rate)) fastest = std::max(fastest, rate);
+  }
+  return fastest;
 }
 
 // A blow inside the step does work.
