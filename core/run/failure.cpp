@@ -120,11 +120,13 @@ std::string RunFailure::why_open(double position) const {
                      row_name(worst), position);
 }
 
-std::string RunFailure::why_singular() {
+std::string RunFailure::why_singular() const { return why_singular(run_.accepted.t()); }
+
+std::string RunFailure::why_singular(double t) const {
   std::string text = fmt::format(
       "t = {:.9g} s: the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding "
       "hides how",
-      run_.accepted.t());
+      t);
   if (const std::string worst = row_name(run_.solver.weakest_row()); !worst.empty()) {
     text += "; first to depend on the other constraints is " + worst;
   }
@@ -174,6 +176,11 @@ std::string RunFailure::why_energy_grows(double dt, double gained) {
   return text + std::string(run_.settings.accuracy > 0.0 ? advice::jump : advice::accuracy);
 }
 
+std::string RunFailure::why_unsolved(double t) const {
+  if (run_.solver.regularity() < near_singular) return why_singular(t);
+  return fmt::format("t = {:.9g} s: {}", t, run_.solver.trouble());
+}
+
 /// Numbers of the program's own types that are not finite any more come of the model or of the step.
 std::string RunFailure::why_beyond_bounds(double t, int joint) const {
   std::string text = fmt::format("t = {:.9g} s: forces and speeds grow beyond all bounds", t);
@@ -217,9 +224,9 @@ void RunFailure::explain_dead_point() {
   }
 }
 
-// Before a path leaves what the mechanism reaches, its inputs turn faster and faster, and no step is short enough.
+// Before a path leaves what the mechanism reaches, its inputs turn faster and faster, and no step is short enough; so
+// they do where a formula that finds them comes to the end of where it has a value.
 bool RunFailure::explain_end_of_path() {
-  if (run_.model.kinematics.empty()) return false;
   std::vector<TimeValue> values(run_.model.drivers.size());
   const double whole = run_.model.settings.end - run_.model.settings.start;
   for (const double part : {1e-9, 1e-6, 1e-4, 1e-3}) {
@@ -227,18 +234,20 @@ bool RunFailure::explain_end_of_path() {
     fault.kind = Fault::Kind::motion;
     const double t = run_.accepted.t() + part * whole;
     if (run_.system.motions().evaluate(t, {values.data(), values.size()}, run_.motion_work, fault.motion)) continue;
-    if (std::string_view(fault.motion.id) == "ik-unreachable") fail_with(fault, t);
-    return run_.outcome.reason.ends_with("[ik-unreachable]");
+    const std::string_view id = fault.motion.id;
+    if (id != "ik-unreachable" && id != "bad-expression") return false;
+    fail_with(fault, t);
+    return true;
   }
   return false;
 }
 
 // Where constraints have lost rank no step is short enough.
 void RunFailure::explain_singular_position() {
+  if (explain_end_of_path()) return;
   const auto advises = [&](std::string_view advice) { return run_.outcome.reason.ends_with(advice); };
   const bool grew = run_.model.clearance_joints() == 0 && (advises(advice::jump) || advises(advice::accuracy));
   if (!grew && !advises(advice::smaller_step) && !advises(advice::error)) return;
-  if (explain_end_of_path()) return;
   std::optional<SingularPosition> position;
   try {
     position = singular_position(run_.system, run_.accepted);
@@ -254,7 +263,9 @@ void RunFailure::explain_singular_position() {
 // A number of the model that no machine has is worth more than any advice about steps.
 void RunFailure::explain_failure() {
   if (run_.outcome.exit_code != 4 || run_.outcome.reason.find(cause_words) != std::string::npos) return;
-  if (run_.outcome.reason.ends_with("[dead-point]") || run_.outcome.reason.ends_with("[locked]")) return;
+  for (const std::string_view id : {"[dead-point]", "[locked]", "[ik-unreachable]", "[bad-expression]"}) {
+    if (run_.outcome.reason.ends_with(id)) return;
+  }
   const Wreck wreck{run_.accepted.t(), run_.adaptive ? 0.0 : run_.settings.step, failed_joint_, run_.first_forces};
   const std::string cause = likely_cause(run_.system, run_.e_accepted, wreck);
   if (cause.empty()) return;

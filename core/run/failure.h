@@ -35,7 +35,9 @@ class RunFailure {
 
   std::string why_not_converged(double dt) const;
   std::string why_open(double position) const;
-  std::string why_singular();
+  std::string why_singular() const;
+  /// Of a state at t that could not be made to hold its constraints, without a fault of an element.
+  std::string why_unsolved(double t) const;
   /// `limiting_joint`: that asks for a step so short, or -1.
   std::string why_so_small(double dt, double smallest, int limiting_joint) const;
   /// `gained`: energy without work in a step of length dt [J].
@@ -50,6 +52,7 @@ class RunFailure {
  private:
   bool explain_end_of_path();
   void explain_singular_position();
+  std::string why_singular(double t) const;
   std::string why_beyond_bounds(double t, int joint) const;
   int hardest_joint(BodyId body) const;
 

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "base/index.h"
 #include "run/dense_step.h"
 
@@ -107,7 +105,7 @@ bool StepInside::settle_inside(double t) {
   run_.between.t() = t;
   if (settle_between()) return true;
   if (run_.solver.fault().kind != Fault::Kind::none) return failure_.fail_with(run_.solver.fault(), t);
-  return failure_.fail(4, fmt::format("t = {:.9g} s: {}", t, run_.solver.trouble()));
+  return failure_.fail(4, failure_.why_unsolved(t));
 }
 
 bool StepInside::look_inside(double t) {

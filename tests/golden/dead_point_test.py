@@ -25,6 +25,21 @@ PLAY = (", clearance: {bearing_radius: 10 mm, radial_clearance: 0.5 mm, material
         "contact: {law: flores, restitution: 0.9}}")
 SPEED = "velocity, value: 60 rpm"
 
+EQUAL_ARMS = """freeplay: 1
+bodies:
+  crank: {mass: 0.3 kg, inertia: 1e-4, com: [25 mm, 0], frames: {tip: [50 mm, 0]}}
+  coupler: {mass: 0.21 kg, inertia: 2.5e-4, com: [25 mm, 0], frames: {tip: [50 mm, 0]}}
+  slider: {mass: 0.14 kg, inertia: 1e-4}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/tip, coupler]}
+  wrist: {type: revolute, between: [coupler/tip, slider]}
+  guide: {type: prismatic, between: [ground, slider]}
+drivers: {motor: {joint: main, kind: velocity, value: 31.41592653589793 rad/s}}
+initial: {joints: {main: 0 deg}}
+simulation: {end: 0.4 s, accuracy: 1e-5}
+"""
+
 SLIDE = """freeplay: 1
 bodies:
   slider: {mass: 1, inertia: 0.01}
@@ -294,6 +309,15 @@ class DeadPoint(ProgramTest):
             free = model.replace("DRIVER\n", "").replace(" deg}}\nsim", " deg}, speeds: {A: 6}}\nsim")
             out, _ = self.freeplay("run", self.write("m.yaml", free), "--out", "r", "--force")
             self.assertIn("trust: good", out)  # nothing turns it: its forces pass smoothly
+
+    def test_a_row_beside_a_singular_position_that_cannot_be_made_is_said_so(self):
+        """A slider-crank with equal arms: at a right angle the rod may as well turn about the slide."""
+        for integrator in ("bathe", "dopri5", "verner7"):
+            text = EQUAL_ARMS.replace("accuracy: 1e-5", "accuracy: 1e-5, integrator: " + integrator)
+            out, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force", code=4)
+            self.assertIn("the mechanism comes to a singular position", err)
+            self.assertIn("first to depend on the other constraints is joint 'guide'", err)
+            self.assertIn("trust: bad", out)
 
     def test_forces_that_go_on_smoothly_through_a_fold_are_not_doubted(self):
         """A kite under a speed: beside its folds forces rise, step by step, to the same peak however long the steps are."""
