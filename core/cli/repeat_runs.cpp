@@ -19,7 +19,7 @@ int workers_of(const RepeatPlan& plan, int processes) {
 RepeatRuns::RepeatRuns(const Model& model, const RepeatPlan& plan, int processes)
     : plan_(plan),
       work_(model, plan),
-      summary_(plan.runs, plan.seed, moved_in_play),
+      summary_(plan.runs, plan.seed, start_change(model)),
       pool_(work_, {.jobs = workers_of(plan, processes)}) {
   require_repeatable(model);
   pool_.start(static_cast<std::size_t>(processes - 1));

@@ -13,6 +13,7 @@
 #include "results/figure_text.h"
 #include "results/play_noise.h"
 #include "run/figure_noise.h"
+#include "run/play_start.h"
 
 namespace freeplay {
 namespace {
@@ -282,7 +283,13 @@ std::string noise_line(const Model& model, const std::string& tables) {
   if (tables.find(" +- ") == std::string::npos) return {};
   return fmt::format(
       "  +-: impacts make the motion chaotic; another step, start or build may change a figure by so much{}\n",
-      model.clearance_joints() > 0 ? " (--repeat N)" : "");
+      can_be_repeated(model) ? " (--repeat N)" : "");
+}
+
+std::string how_others_start(const Json& repeat) {
+  const double moved = repeat["moved"].get<double>();
+  return moved > 0.0 ? fmt::format("moved in their play by up to {:g} % of it", 100.0 * moved)
+                     : fmt::format("pushed by up to {:g} % of their speed", 100.0 * repeat["pushed"].get<double>());
 }
 
 /// From which starts the medians and ranges are, and which runs are not among them.
@@ -291,11 +298,8 @@ std::string repeat_lines(const Json& repeat) {
   const auto runs = repeat["runs"].get<std::size_t>(), completed = repeat["completed"].get<std::size_t>();
   std::string text = completed == 0
                          ? "  figures are those of the first run: none was completed\n"
-                         : fmt::format(
-                               "  median (range) of {} runs: the model's own start, the others moved in their play by "
-                               "up to {:g} % of it "
-                               "(seed {})\n",
-                               completed, 100.0 * repeat["moved"].get<double>(), repeat["seed"].get<std::uint64_t>());
+                         : fmt::format("  median (range) of {} runs: the model's own start, the others {} (seed {})\n",
+                                       completed, how_others_start(repeat), repeat["seed"].get<std::uint64_t>());
   for (const Json& failed : repeat["failed"]) {
     text += fmt::format("  run {} of {} failed: {}\n", failed["run"].get<std::size_t>(), runs,
                         failed["reason"].get<std::string>());

@@ -62,11 +62,11 @@ RepeatPlan repeat_plan(const std::string& repeat, const std::string& seed) {
 }
 
 void require_repeatable(const Model& model) {
-  if (model.clearance_joints() == 0) {
+  if (!can_be_repeated(model)) {
     throw Error(
         Error::Category::usage, "nothing-to-repeat",
-        "--repeat moves bodies in the play of their joints, and no joint of this model has play: all runs would "
-        "be the same");
+        "--repeat moves bodies in the play of their joints, or pushes those that touch, and in this model no joint has "
+        "play and nothing touches: all runs would be the same");
   }
   if (start_choice(model).repeat != 1) {
     throw Error(Error::Category::usage, "usage",

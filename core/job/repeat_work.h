@@ -19,8 +19,8 @@ struct RepeatPlan {
 /// What --repeat and --seed say, empty where they are not given. Throws Error{usage} "bad-value" or "usage".
 RepeatPlan repeat_plan(const std::string& repeat, const std::string& seed);
 
-/// Throws Error{usage}: "nothing-to-repeat" for a model without play, "usage" where it asks for another start than the
-/// first.
+/// Throws Error{usage}: "nothing-to-repeat" for a model in which nothing can touch, "usage" where it asks for another
+/// start than the first.
 void require_repeatable(const Model& model);
 
 /// A study with one axis, the number of the start in the play: point p is run p + 1. A run gives the figures of its

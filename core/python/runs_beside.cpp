@@ -125,7 +125,7 @@ void RunsBeside::repeat(Outcome& outcome, Json& summary, const RunTick& tick) {
   if (plan_.runs == 0) return;
   std::atomic<int> stop{outcome.status == RunStatus::interrupted ? 1 : 0};
   RepeatWork work(opened_.model(), plan_, &stop);
-  RepeatSummary found(plan_.runs, plan_.seed, moved_in_play);
+  RepeatSummary found(plan_.runs, plan_.seed, start_change(opened_.model()));
   std::mutex mutex;  // of `found`
   std::atomic<std::uint64_t> next{0}, working{0};
   const auto run = [&] {

@@ -40,8 +40,8 @@ Json spread(const std::vector<double>& found, bool whole) {
 
 }  // namespace
 
-RepeatSummary::RepeatSummary(std::size_t runs, std::uint64_t seed, double moved)
-    : runs_(runs), seed_(seed), moved_(moved) {}
+RepeatSummary::RepeatSummary(std::size_t runs, std::uint64_t seed, StartChange change)
+    : runs_(runs), seed_(seed), change_(change) {}
 
 std::vector<double> RepeatSummary::values_of(const Json& summary) {
   std::vector<double> values;
@@ -72,8 +72,9 @@ Json RepeatSummary::json(const Json& first) const {
   for (const Failure& failure : sorted_failures()) {
     failed.push_back({{"run", failure.run + 1}, {"exit_code", failure.exit_code}, {"reason", failure.reason}});
   }
-  Json out = {
-      {"runs", runs_}, {"seed", seed_}, {"moved", moved_}, {"completed", completed_}, {"failed", std::move(failed)}};
+  Json out = {{"runs", runs_},           {"seed", seed_},
+              {"moved", change_.moved},  {"pushed", change_.pushed},
+              {"completed", completed_}, {"failed", std::move(failed)}};
   for (const char* part : parts) out[part] = Json::object();
   if (completed_ == 0) return out;
   Json* place = nullptr;

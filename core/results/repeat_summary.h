@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/json_text.h"
+#include "run/play_start.h"
 
 namespace freeplay {
 
@@ -14,7 +15,7 @@ namespace freeplay {
 /// `joints`, `drivers`, `forces` and `paths` of a summary is kept.
 class RepeatSummary {
  public:
-  RepeatSummary(std::size_t runs, std::uint64_t seed, double moved);
+  RepeatSummary(std::size_t runs, std::uint64_t seed, StartChange change);
 
   /// What is kept of a summary, in its order; NaN: none. Summaries of one model have the same numbers.
   static std::vector<double> values_of(const Json& summary);
@@ -35,7 +36,7 @@ class RepeatSummary {
 
   std::size_t runs_, completed_ = 0;
   std::uint64_t seed_;
-  double moved_;
+  StartChange change_;
   std::vector<std::vector<double>> values_;  // by run, as far as they are known
   std::vector<Failure> failures_;
 };

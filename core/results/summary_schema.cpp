@@ -142,11 +142,8 @@ Json repeat_part() {
                               {"max", number_or_null()},
                               {"values", list_of(number_or_null())}});
   const Json failed = record({{"run", integer()}, {"exit_code", integer()}, {"reason", text()}});
-  Json fields = {{"runs", integer()},
-                 {"seed", integer()},
-                 {"moved", number()},
-                 {"completed", integer()},
-                 {"failed", list_of(failed)}};
+  Json fields = {{"runs", integer()},  {"seed", integer()},      {"moved", number()},
+                 {"pushed", number()}, {"completed", integer()}, {"failed", list_of(failed)}};
   for (const char* part : {"joints", "drivers", "forces", "paths"}) fields[part] = by_name(by_name(spread));
   Json part = record(std::move(fields));
   part["type"] = {"object", "null"};

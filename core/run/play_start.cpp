@@ -1,6 +1,8 @@
 #include "run/play_start.h"
 
+#include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
@@ -8,13 +10,17 @@
 #include "assembly/bare_start.h"
 #include "base/index.h"
 #include "base/philox.h"
+#include "component/joint_roles.h"
+#include "model/whole_mass.h"
 #include "run/observer.h"
+#include "stage/newton_stage_solver.h"
 
 namespace freeplay {
 namespace {
 
 constexpr std::uint64_t stream = 0x706c6179;  // "play": draws of other kinds have other keys
 constexpr int most_attempts = 12;
+constexpr double least_push = 1e-9;  // of what is asked for: less is rounding
 
 /// Evenly distributed in the unit disc or ball.
 Vector3 unit_ball(const RandomWords& words, Space space) {
@@ -89,14 +95,58 @@ Start moved_start(System& system, std::uint64_t seed, std::uint64_t number,
               fmt::format("joint '{}' is in contact wherever it is put in its play", still));
 }
 
+/// The same for a model without play: pushed.
+Start pushed_start(System& system, std::uint64_t seed, std::uint64_t number,
+                   Start (*assembled)(System&, const OffsetChange&)) {
+  Start start = assembled(system, {});
+  const Model& model = system.model();
+  State& state = start.state;
+  const std::span<const double> mass = system.inertia().mass();
+  const double size = model_size(model), whole = model.settings.end - model.settings.start;
+  double twice_energy = 0.0;
+  for (std::size_t i = 0; i < mass.size(); ++i) twice_energy += mass[i] * state.v()[i] * state.v()[i];
+  const double speed = std::max(std::sqrt(twice_energy / whole_mass(model).mass), size / whole);
+  const std::size_t width = model.space == Space::planar ? 3 : 6, lengths = model.space == Space::planar ? 2 : 3;
+  const std::vector<double> before(state.v().begin(), state.v().end());
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const double most = pushed * speed / (i % width < lengths ? 1.0 : size);
+    state.v()[i] += most * (2.0 * unit_number(philox({number, i, 1, 0}, {seed, stream})[0]) - 1.0);
+  }
+  NewtonStageSolver solver(system, {});
+  solver.use_history(state.h());
+  StateView view = state.view();
+  std::vector<double> internal_rate(state.z().size());
+  double change = 0.0;
+  if (solver.project_velocity(view) && solver.accelerate(view, {internal_rate.data(), internal_rate.size()})) {
+    for (std::size_t i = 0; i < before.size(); ++i) change = std::max(change, std::abs(state.v()[i] - before[i]));
+  }
+  if (change > least_push * pushed * speed) return start;
+  throw Error(Error::Category::numerical, "no-free-start", "joints and drivers leave no body free to be pushed");
+}
+
+Start other_start(System& system, std::uint64_t seed, std::uint64_t number,
+                  Start (*assembled)(System&, const OffsetChange&)) {
+  const auto other = system.model().clearance_joints() > 0 ? moved_start : pushed_start;
+  return other(system, seed, number, assembled);
+}
+
 }  // namespace
 
+StartChange start_change(const Model& model) {
+  return model.clearance_joints() > 0 ? StartChange{.moved = moved_in_play} : StartChange{.pushed = pushed};
+}
+
+bool can_be_repeated(const Model& model) {
+  return std::ranges::any_of(
+      model.joints, [](const JointElement& joint) { return joint.has_play || contact_count(joint.layout) > 0; });
+}
+
 Start assemble_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
-  return number == 0 ? assemble(system) : moved_start(system, seed, number, assemble);
+  return number == 0 ? assemble(system) : other_start(system, seed, number, assemble);
 }
 
 Start assemble_bare_in_play(System& system, std::uint64_t seed, std::uint64_t number) {
-  return number == 0 ? assemble_bare(system) : moved_start(system, seed, number, assemble_bare);
+  return number == 0 ? assemble_bare(system) : other_start(system, seed, number, assemble_bare);
 }
 
 }  // namespace freeplay

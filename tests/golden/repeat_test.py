@@ -65,6 +65,15 @@ simulation: {end: 2 s, accuracy: 1 um, output: {discard: 0.2 s}}
 """
 
 
+# A mass that runs against a stop.
+PUSHED = """freeplay: 1
+bodies: {m: {mass: 1, inertia: 1}}
+joints: {slide: {type: prismatic, between: [ground, m]}}
+forces:
+  stop: {type: joint-stop, between: [ground, m], lower: -10 mm, upper: 10 mm, contact: {law: flores, K: 1e8, restitution: 0.7}}
+  push: {type: force, at: m, value: [5, 0]}
+%ssimulation: {end: 0.2 s, accuracy: 1 um}
+"""
 UNITS = {"": 1.0, "k": 1e3, "M": 1e6, "m": 1e-3, "u": 1e-6}
 
 
@@ -140,9 +149,26 @@ class Repeat(ProgramTest):
         repeat = self.run_json(mechanism("4-rrr"), "--repeat", "3", "--end", "2 ms")["repeat"]
         self.assertEqual((3, []), (repeat["completed"], repeat["failed"]))
 
+    def test_bodies_that_touch_without_play_are_pushed(self):
+        geneva = mechanism("gallery/geneva")
+        out, _ = self.freeplay("run", geneva, "--repeat", "3", "--out", "g")
+        self.assertRegex(out, r"3 runs: the model's own start, the others pushed by up to 0.1 % of their speed \(seed 1\)")
+        with open(self.path("g", "summary.json"), encoding="utf-8") as file:
+            repeat = json.load(file)["repeat"]
+        self.assertEqual((3, 0.0, 1e-3), (repeat["completed"], repeat["moved"], repeat["pushed"]))
+        own, *others = repeat["forces"]["quarter1.drive"]["max_force"]["values"]
+        for other in others:
+            self.assertNotEqual(own, other)
+            self.assertAlmostEqual(own, other, delta=0.01 * own)
+        led = PUSHED % "drivers: {lead: {joint: slide, kind: velocity, value: 0.1}}\n"
+        out, _ = self.freeplay("run", self.write("m.yaml", led), "--repeat", "2", code=4)
+        self.assertIn("run 2 of 2 failed: joints and drivers leave no body free to be pushed", out)
+        out, _ = self.freeplay("run", self.write("m.yaml", PUSHED % ""), "--repeat", "2")
+        self.assertIn("in 2 runs", out)
+
     def test_what_cannot_be_repeated(self):
-        for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint of this model has play"),
-                                ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "has play"),
+        for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint has play and nothing touches"),
+                                ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "no joint has play"),
                                 ((mechanism("slider-crank"), "--repeat", "1"), "--repeat"),
                                 ((mechanism("slider-crank"), "--repeat", "many"), "--repeat"),
                                 ((mechanism("slider-crank"), "--seed", "4"), "--repeat"),

@@ -11,7 +11,7 @@ Json figures(double force) {
 }
 
 TEST(RepeatSummary, HasMedianRangeAndAllValues) {
-  RepeatSummary summary(4, 7, 0.01);
+  RepeatSummary summary(4, 7, {.moved = 0.01});
   for (const auto& [run, force] : {std::pair{0u, 3.0}, {1u, 1.0}, {2u, 9.0}, {3u, 5.0}})
     summary.add(run, RepeatSummary::values_of(figures(force)));
   const Json json = summary.json(figures(0.0));
@@ -33,7 +33,7 @@ TEST(RepeatSummary, IsTheSameInWhateverOrderRunsCome) {
 }
 
 TEST(RepeatSummary, ARunThatFailedCostsNoOther) {
-  RepeatSummary summary(3, 1, 0.01);
+  RepeatSummary summary(3, 1, {.moved = 0.01});
   summary.add(2, RepeatSummary::values_of(figures(5.0)));
   summary.fail(1, 4, "no step could be made");
   summary.add(0, RepeatSummary::values_of(figures(4.0)));
