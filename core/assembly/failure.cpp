@@ -73,8 +73,11 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     location = joint.location;
   }
   if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
-  throw Error(Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
-              "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
+  throw Error(
+      Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
+      model.space == Space::spatial
+          ? "check lengths, axes of joints and start values, or give the bodies a `pose` closer to the wanted one"
+          : "check lengths and start values, or give the bodies a `pose` closer to the wanted one");
 }
 
 }  // namespace freeplay

@@ -222,8 +222,8 @@ class Reach {
     } else if (most) {
       text += ", beyond which its loops close only where it would have to leap to";
     }
-    return text +
-           fmt::format("; it can {}: keep the driver within, or check the lengths [dead-point]", words(range, kind));
+    return text + fmt::format("; it can {}: keep the driver within, or check the lengths{} [dead-point]",
+                              words(range, kind), model_.space == Space::spatial ? " and the axes of the joints" : "");
   }
 
   // With the driver's joint leading: its row depends on those of the joints that hold it.

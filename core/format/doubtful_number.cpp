@@ -24,12 +24,15 @@ struct UsualRange {
 };
 
 // Moduli: gels have some 10 kPa, rubber 1 MPa (Ashby, Materials Selection), diamond 1.2 TPa. Densities: aerogel 1
-// kg/m^3, osmium 22 590. Stiffness: a steel cube of 1 m has 2e11 N/m.
+// kg/m^3, osmium 22 590. Stiffness: a steel cube of 1 m has 2e11 N/m. Surfaces in rest creep with nm/s (Heslot and
+// others 1994, Phys Rev E 49), and what smooths friction over more than bodies move with is a damper.
 constexpr UsualRange usual_ranges[] = {
     {"Pa", " E modulus youngs_modulus young ", 1e3, 2e12, 1e6, "moduli go from 1 MPa (rubber) to 1200 GPa (diamond)"},
     {"N/m", "", 0.0, 1e12, 0.0, "a steel cube of 1 m has 2e11 N/m"},
     {"N*m/rad", "", 0.0, 1e12, 0.0, "a steel shaft of 1 m has 1e10 N*m/rad"},
     {"1", " mu mu_s mu_k ", 0.0, 3.0, 0.0, "coefficients of friction go up to about 1.5 (rubber)"},
+    {"m/s", " vs ", 1e-9, 10.0, 1e-9, "friction is smoothed over 1 nm/s to 10 m/s"},
+    {"rad/s", " vs ", 1e-7, 1e3, 1e-7, "friction is smoothed over 1e-7 to 1000 rad/s"},
     {"kg/m^3", "", 1.0, 3e4, 1.0, "densities go from 1 (aerogel) to 22590 kg/m^3 (osmium)"},
 };
 
