@@ -4,7 +4,7 @@ import math
 import re
 import unittest
 
-from program import ProgramTest
+from program import ProgramTest, mechanism
 
 FOUR_BAR = """freeplay: 1
 bodies:
@@ -318,6 +318,12 @@ class DeadPoint(ProgramTest):
             self.assertIn("the mechanism comes to a singular position", err)
             self.assertIn("first to depend on the other constraints is joint 'guide'", err)
             self.assertIn("trust: bad", out)
+
+    def test_a_formula_that_ends_is_named_before_what_it_makes_race(self):
+        for accuracy in ("0.1 mm", "1 um"):
+            _, err = self.freeplay("run", mechanism("spatial/delta"), "--set", "reach=0.62", "--accuracy", accuracy, "--out", "r",
+                                   "--force", code=4)
+            self.assertIn("driver 'leg3.motor': acos of a number beyond -1 to 1 [bad-expression]", err)
 
     def test_forces_that_go_on_smoothly_through_a_fold_are_not_doubted(self):
         """A kite under a speed: beside its folds forces rise, step by step, to the same peak however long the steps are."""
