@@ -126,8 +126,8 @@ Start pushed_start(System& system, std::uint64_t seed, std::uint64_t number,
 
 Start other_start(System& system, std::uint64_t seed, std::uint64_t number,
                   Start (*assembled)(System&, const OffsetChange&)) {
-  const auto other = system.model().clearance_joints() > 0 ? moved_start : pushed_start;
-  return other(system, seed, number, assembled);
+  const bool touches = system.model().clearance_joints() == 0 && can_be_repeated(system.model());
+  return touches ? pushed_start(system, seed, number, assembled) : moved_start(system, seed, number, assembled);
 }
 
 }  // namespace

@@ -166,6 +166,12 @@ class Repeat(ProgramTest):
         out, _ = self.freeplay("run", self.write("m.yaml", PUSHED % ""), "--repeat", "2")
         self.assertIn("in 2 runs", out)
 
+    def test_starts_of_models_in_which_nothing_touches_are_all_the_same(self):
+        for number in ("1", "2"):
+            self.freeplay("run", mechanism("pendulum"), "--end", "10 ms", "--set", "repeat=" + number, "--out", number)
+        with open(self.path("1", "results.csv"), "rb") as own, open(self.path("2", "results.csv"), "rb") as other:
+            self.assertEqual(own.read(), other.read())
+
     def test_what_cannot_be_repeated(self):
         for arguments, word in (((mechanism("four-bar"), "--repeat", "4"), "no joint has play and nothing touches"),
                                 ((mechanism("slider-crank"), "--ideal", "all", "--repeat", "4"), "no joint has play"),
