@@ -10,7 +10,7 @@
 namespace freeplay {
 namespace {
 constexpr double smallest_step = 1e-3;  // of the step asked for
-constexpr double largest_turn = 2.5;    // of a joint in one step [rad]: angles are continued over half turns
+constexpr double most_turn_of_step = 2.5;    // of a joint in one step [rad]: angles are continued over half turns
 
 long steps_between(double from, double to, double step) {
   return std::max(1L, std::lround(std::ceil((to - from) / step - 1e-6)));
@@ -54,7 +54,7 @@ bool FixedRun::step(double until) {
     leg_.dt = std::min(leg_.dt, until - run_.accepted.t());
   }
   double& dt = leg_.dt;
-  for (const double fastest = fastest_turn(); fastest * dt > largest_turn;) dt *= 0.5;
+  for (const double fastest = fastest_turn(); fastest * dt > most_turn_of_step;) dt *= 0.5;
   for (;;) {
     const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * std::min(smallest, dt);
     if (last) dt = leg_.goal - run_.accepted.t();
