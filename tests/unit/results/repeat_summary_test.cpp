@@ -25,7 +25,7 @@ TEST(RepeatSummary, HasMedianRangeAndAllValues) {
 }
 
 TEST(RepeatSummary, IsTheSameInWhateverOrderRunsCome) {
-  RepeatSummary one(3, 1, 0.01), other(3, 1, 0.01);
+  RepeatSummary one(3, 1, {.moved = 0.01}), other(3, 1, {.moved = 0.01});
   for (const std::size_t run : {0u, 1u, 2u}) one.add(run, RepeatSummary::values_of(figures(static_cast<double>(run))));
   for (const std::size_t run : {2u, 0u, 1u})
     other.add(run, RepeatSummary::values_of(figures(static_cast<double>(run))));
