@@ -83,8 +83,6 @@ Eigen::Matrix3d turn_of(const double* quaternion, const Spot& spot, const std::s
   return Eigen::Matrix3d::Identity();
 }
 
-Eigen::Matrix3d turn_to(const Eigen::Vector3d& axis) {
-  return urdf::least_turn(Eigen::Vector3d::UnitZ(), axis);
-}
+Eigen::Matrix3d turn_to(const Eigen::Vector3d& axis) { return urdf::least_turn(Eigen::Vector3d::UnitZ(), axis); }
 
 }  // namespace freeplay::mjcf

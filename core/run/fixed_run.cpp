@@ -9,8 +9,8 @@
 
 namespace freeplay {
 namespace {
-constexpr double smallest_step = 1e-3;  // of the step asked for
-constexpr double most_turn_of_step = 2.5;    // of a joint in one step [rad]: angles are continued over half turns
+constexpr double smallest_step = 1e-3;     // of the step asked for
+constexpr double most_turn_of_step = 2.5;  // of a joint in one step [rad]: angles are continued over half turns
 
 long steps_between(double from, double to, double step) {
   return std::max(1L, std::lround(std::ceil((to - from) / step - 1e-6)));
