@@ -54,9 +54,10 @@ bool FixedRun::step(double until) {
     leg_.dt = std::min(leg_.dt, until - run_.accepted.t());
   }
   double& dt = leg_.dt;
-  for (const double fastest = fastest_turn(); fastest * dt > most_turn_of_step;) dt *= 0.5;
+  // What turns faster still is far from any machine, and ends the run by other criteria.
+  for (const double fastest = fastest_turn(); fastest * dt > most_turn_of_step && dt > 2.0 * smallest;) dt *= 0.5;
   for (;;) {
-    const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * std::min(smallest, dt);
+    const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * smallest;
     if (last) dt = leg_.goal - run_.accepted.t();
     step_corners_.list(leg_.goal);
     const double end = last ? leg_.goal : run_.accepted.t() + dt, corner = step_corners_.at(end);
