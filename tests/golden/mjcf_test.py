@@ -5,7 +5,7 @@ import os
 import random
 import unittest
 
-from robot_twins import TwinTest
+from robot_twins import TwinTest, closed_four_bar
 
 
 class MjcfTest(TwinTest):
@@ -25,19 +25,9 @@ def mujoco(world, rest=""):
     return "<mujoco>\n%s<worldbody>\n%s\n</worldbody>\n</mujoco>\n" % (rest, world)
 
 
-def four_bar_angles():
-    """Angles of crank, coupler and rocker: two circles about the crank's tip and the far pin."""
-    a = math.radians(60)
-    x, y = 0.4 - 0.1 * math.cos(a), -0.1 * math.sin(a)
-    gap = math.hypot(x, y)
-    coupler = math.atan2(y, x) + math.acos((0.3 ** 2 + gap ** 2 - 0.25 ** 2) / (2 * 0.3 * gap))
-    tip = (0.1 * math.cos(a) + 0.3 * math.cos(coupler), 0.1 * math.sin(a) + 0.3 * math.sin(coupler))
-    return a, coupler, math.atan2(tip[1], tip[0] - 0.4)
-
-
 def four_bar(loop, sites=("", "")):
     """In the plane xy, drawn closed, with angles in degrees."""
-    a, b, c = (math.degrees(angle) for angle in four_bar_angles())
+    a, b, c = (math.degrees(angle) for angle in closed_four_bar())
     body = """<body name="%s" pos="%s" euler="0 0 %r"><joint name="%s"%s/>
 <inertial pos="%s 0 0" mass="%s" diaginertia="1 1 %s"/>%s"""
     return mujoco(
@@ -48,7 +38,7 @@ def four_bar(loop, sites=("", "")):
 
 
 def four_bar_twin(ends="coupler/C, rocker/C"):
-    a, b, c = four_bar_angles()
+    a, b, c = closed_four_bar()
     return """freeplay: 1
 gravity: [0, -9.81]
 bodies:
