@@ -11,6 +11,7 @@ namespace {
 // Beyond is a number that was not set.
 constexpr int most_of_a_joint = 10000, most_of_an_integrator = 100000000;
 constexpr std::size_t most_names = 1000;
+constexpr std::size_t numbers_of_bound = 7, most_bounds = 16;
 
 bool all_named(Span<const Channel> channels) {
   if (channels.data == nullptr) return channels.size == 0;
@@ -33,6 +34,18 @@ bool known_roles(const JointLayout& layout) {
   return std::ranges::all_of(layout.event_roles, [](EventRole role) { return role <= EventRole::contact_end; });
 }
 
+bool known_bounds(Span<const double> bounds, Space space) {
+  if (bounds.size % numbers_of_bound != 0 || bounds.size > most_bounds * numbers_of_bound) return false;
+  if (bounds.data == nullptr) return bounds.size == 0;
+  for (std::size_t i = 0; i < bounds.size; i += numbers_of_bound) {
+    const Span<const double> one = bounds.part(i, numbers_of_bound);
+    if (!std::ranges::all_of(one, [](double x) { return std::isfinite(x); })) return false;
+    if (space == Space::planar && (one[3] != 0.0 || one[4] != 0.0 || one[5] != 0.0)) return false;
+    if (!(one[0] > 0.0) || std::ranges::all_of(one.part(1, 6), [](double x) { return x == 0.0; })) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string declaration_fault(const JointLayout& layout) {
@@ -53,6 +66,12 @@ std::string declaration_fault(const JointLayout& layout) {
   if (layout.play_shape > PlayShape::walls) return "it declares play of an unknown shape";
   if (!(layout.contact_reach >= 0.0) || !std::isfinite(layout.contact_reach)) {
     return fmt::format("it declares contacts {} m from the second origin", layout.contact_reach);
+  }
+  if (!known_bounds(layout.play_bounds, layout.space)) {
+    return fmt::format(
+        "it declares bounds of its play that are not up to {} times a gap above 0 and six numbers, not "
+        "all of them 0, in the plane x, y and the turn alone",
+        most_bounds);
   }
   if (layout.planar_rows.size > 0 && layout.space == Space::planar) {
     if (layout.planar_rows.data == nullptr) return "it declares planar rows and does not say which";

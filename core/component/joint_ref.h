@@ -67,6 +67,9 @@ class JointRef {
     return ok(table_->contacts(self_, &in, numbers, &m));
   }
   bool kinks(const JointInput& in, Span<double> g, Message& m) const { return ok(table_->kinks(self_, &in, g, &m)); }
+  bool free_levers(const JointInput& in, Span<double> levers, Message& m) const {
+    return ok(table_->free_levers(self_, &in, levers, &m));
+  }
 
  private:
   static bool ok(Status status) { return status == Status::ok; }

@@ -49,6 +49,7 @@ abi::JointTable defaults<abi::JointTable>() {
   };
   table.contacts = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
   table.kinks = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
+  table.free_levers = [](const void*, const JointInput*, Span<double>, Message*) noexcept { return Status::ok; };
   return table;
 }
 // A law without switches.

@@ -130,6 +130,16 @@ struct JointLayout {
   double contact_reach = 0.0;  ///< between walls: most by which a depth changes with the angle of b, as by corners that
                                ///< stand so far from its origin [m]
   Span<const BodyLine> outlines;  ///< drawn in place of a symbol; they live as long as the joint
+  /// Play that is no circle, for the error analysis: seven numbers for each bound, gap [m], n (3) and m (3), with
+  ///
+  ///   |n.d + m.phi| <= gap
+  ///
+  /// for the shift d and the turn phi (a small rotation vector) by which b stands off from where the ideal twin holds
+  /// it, in the axes of a: as each contact has them to first order. All hold together, and what none of them bounds the
+  /// twin leaves free, too. They live as long as the joint.
+  Span<const double> play_bounds;
+  /// Spatial models, nonzero: the way that free_distance() promises is seen from a, and turns count by free_levers().
+  std::uint32_t free_turns = 0;
 };
 
 /// Everything a joint may read. All views are valid during the call only.
@@ -187,7 +197,8 @@ struct JointForces {
   double potential_rate = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Start of a joint with play: where its second marker stands in the first, world axes.
+/// Start of a joint with play: where its second marker stands in the first, world axes. A joint writes its outputs and
+/// leaves the inputs.
 struct InitialOffset {
   double position[3];  ///< [m]
   double velocity[3];  ///< [m/s]
@@ -197,6 +208,12 @@ struct InitialOffset {
   /// Planar models: angle of b against where the ideal joint holds it, and its rate.
   double turn = 0.0;       ///< [rad]
   double turn_rate = 0.0;  ///< [rad/s]
+  /// Spatial models: rotation vector by which b is turned from where the ideal joint holds it, and angular velocity of
+  /// b against a beside the motion that the ideal joint leaves free, world axes.
+  double tilt[3] = {};       ///< [rad]
+  double tilt_rate[3] = {};  ///< [rad/s]
+  /// In, with `rotation`: both markers as the ideal joint holds them; null where that is not known yet.
+  const MarkerKinematics *a = nullptr, *b = nullptr;
 };
 
 /// Marker accelerations [a; alpha] in world axes, 6 numbers each [m/s^2, rad/s^2].
@@ -244,8 +261,12 @@ class Joint {
   /// steps of fixed size the host does not ask a joint for anything of that until its markers have used up the
   /// distance, nearly. 0: no promise. Play between walls (PlayShape) counts otherwise, in planar models: how far the
   /// origin of b moves across the x axis of a, seen from a, and JointLayout::contact_reach times the angle by which b
-  /// turns against a, added.
+  /// turns against a, added. With JointLayout::free_turns the way is that of the origin of b seen from a, in the axes
+  /// of a, and free_levers() times the ways of the tips of the unit axes of b there, added.
   virtual double free_distance(const JointInput&) const { return 0.0; }
+  /// Right after free_distance(), with JointLayout::free_turns: how far from the origin of b, along each of its three
+  /// axes, what may touch stands [m]. The turn of a round pin about its axis counts nothing if the other two are 0.
+  virtual void free_levers(const JointInput&, Span<double> /*levers*/) const {}
   /// The first time after t [s] at which forces or rows, as functions of JointInput::t alone, begin, end, jump or have
   /// a kink: runs with error control end a step there. It depends on nothing but t. `unbounded`: there is none. Corners
   /// of a TimeFunction among the parameters are known to the host.
@@ -283,6 +304,7 @@ struct JointTable {
   Status (*next_corner)(const void*, double t, double* corner, Message*) noexcept;
   Status (*contacts)(const void*, const JointInput*, Span<double> numbers, Message*) noexcept;
   Status (*kinks)(const void*, const JointInput*, Span<double> g, Message*) noexcept;
+  Status (*free_levers)(const void*, const JointInput*, Span<double> levers, Message*) noexcept;
 };
 
 /// Thunks are instantiated inside the plugin, so its exceptions are caught where they are thrown.
@@ -343,6 +365,9 @@ inline constexpr JointTable joint_table{
     },
     [](const void* s, const JointInput* in, Span<double> g, Message* m) noexcept {
       return guarded(m, [&] { static_cast<const J*>(s)->kinks(*in, g); });
+    },
+    [](const void* s, const JointInput* in, Span<double> levers, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const J*>(s)->free_levers(*in, levers); });
     }};
 
 template <class J>

@@ -60,6 +60,10 @@ constexpr bool leaves_surface() {
 ///
 ///   static constexpr double share;                                      part of them that each contact has
 ///
+/// One of spatial models whose contacts are points of b before flat walls, by which runs leave it alone in flight, has
+///
+///   std::array<double, 3> levers() const;                               most of their coordinates in the axes of b [m]
+///
 /// One that depends on what was before, as on turns that were counted, keeps numbers of its own in the history:
 ///
 ///   static constexpr std::size_t kept;                                  how many
@@ -84,6 +88,7 @@ class Contacts : public Joint {
   static constexpr std::size_t count = Geometry::contacts, contact_channels = 3;
   static constexpr double share = share_of<Geometry>();
   static constexpr bool keeps = requires { Geometry::kept; };
+  static constexpr bool has_levers = requires(const Geometry& g) { g.levers(); };
 
   Contacts(const Geometry& geometry, const Laws& laws) : geometry_(geometry), laws_(laws) {}
 
@@ -235,9 +240,10 @@ class Contacts : public Joint {
     }
     return limit;
   }
-  /// Between walls no depth changes by more than the shift across and the way of the contact in a turn.
+  /// Between walls no depth changes by more than the shift across and the way of the contact in a turn; before those of
+  /// a body in space, than the shift and what its levers make of a turn.
   double free_distance(const JointInput& in) const override {
-    if (!Kinematics::planar || !geometry_.between_walls()) return 0.0;
+    if (Kinematics::planar ? !geometry_.between_walls() : !has_levers) return 0.0;
     const Pair pair(in);
     double free = unbounded;
     for (std::size_t i = 0; i < count; ++i) {
@@ -245,6 +251,9 @@ class Contacts : public Joint {
       free = std::min(free, -contact(with(in.history), pair.numbers(), i).penetration);
     }
     return std::max(0.0, free);
+  }
+  void free_levers(const JointInput&, Span<double> levers) const override {
+    if constexpr (has_levers) std::ranges::copy(geometry_.levers(), levers.begin());
   }
   const char* warning(const JointInput& in) const override {
     if (all_fly(in)) return nullptr;
@@ -273,6 +282,7 @@ class Contacts : public Joint {
     if constexpr (keeps) layout.history += static_cast<std::int32_t>(Geometry::kept);
     layout.kinks = static_cast<std::int32_t>(count) * laws_.count_kinks();
     layout.clearance = geometry_.play;
+    layout.free_turns = !Kinematics::planar && has_levers ? 1 : 0;
   }
   const Geometry& geometry() const { return geometry_; }
   const Laws& laws() const { return laws_; }

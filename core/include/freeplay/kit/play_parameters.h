@@ -128,6 +128,31 @@ struct Start {
   InitialOffset offset{};
 };
 
+/// Leaves what the host has given; all else of a start is zero then.
+inline void clear_start(InitialOffset& out) {
+  const InitialOffset given = out;
+  out = InitialOffset{};
+  out.rotation = given.rotation;
+  out.a = given.a;
+  out.b = given.b;
+}
+
+/// The keys `tilt` and `tilt_speed` of `initial`: a rotation vector [rad] and an angular velocity [rad/s].
+struct TiltStart {
+  explicit TiltStart(const Parameters& p) {
+    if (p.word("clearance.initial") >= 0) return;
+    tilt = p.vector("clearance.initial.tilt");
+    tilt_rate = p.vector("clearance.initial.tilt_speed");
+  }
+  bool tilts() const { return tilt != std::array<double, 3>{}; }
+  std::array<double, 3> tilt{}, tilt_rate{};
+};
+/// Of a type that keeps parallel in the plane. Throws BadParameter with `remedy`.
+inline void refuse_tilt(const Parameters& p, const char* remedy) {
+  for (const char* key : {"clearance.initial.tilt", "clearance.initial.tilt_speed"})
+    if (p.given(key)) throw BadParameter(key, "type-space", remedy);
+}
+
 constexpr Parameter length(const char* name, const char* summary) {
   return {
       .name = name, .unit = "m", .default_value = optional, .minimum = 0.0, .open = Open::minimum, .summary = summary};
@@ -183,6 +208,21 @@ inline constexpr Parameter start_rows[] = {
      .unit = "m/s",
      .default_value = optional,
      .summary = "Velocity of the journal centre relative to the bearing centre at the start, global axes."},
+};
+
+/// Of those that may also start tilted, in space.
+inline constexpr Parameter tilt_start_rows[] = {
+    {.name = "clearance.initial.tilt",
+     .kind = ParameterKind::vector,
+     .unit = "rad",
+     .default_value = optional,
+     .summary = "Spatial models: rotation vector by which the journal is tilted in the bearing at the start, global "
+                "axes; its part along the axis, about which it turns freely, does nothing."},
+    {.name = "clearance.initial.tilt_speed",
+     .kind = ParameterKind::vector,
+     .unit = "rad/s",
+     .default_value = optional,
+     .summary = "Spatial models: angular velocity by which that changes at the start, likewise."},
 };
 
 /// Tables one after the other.

@@ -43,9 +43,7 @@ inline Eigen::Vector2d across_walls(const InitialOffset& offset) {
 }
 /// Leaves the rest of the start zero.
 inline void write_start(const Eigen::Vector2d& n, double shift, double shift_rate, InitialOffset& out) {
-  const double* rotation = out.rotation;
-  out = InitialOffset{};
-  out.rotation = rotation;
+  clear_start(out);
   for (int i = 0; i < 2; ++i) {
     out.position[i] = shift * n[i];
     out.velocity[i] = shift_rate * n[i];
