@@ -13,7 +13,7 @@ constexpr Parameter sleeve_rows[] = {
      .summary = "Length of the sleeve along the axis; its middle is the first frame."},
 };
 constexpr auto cylindrical_clearance_parameters =
-    play::joined(play::radius_rows, sleeve_rows, play::law_rows, play::start_rows);
+    play::joined(play::radius_rows, sleeve_rows, play::law_rows, play::start_rows, play::tilt_start_rows);
 
 }  // namespace
 

@@ -103,6 +103,9 @@ class PointOnLineClearance final : public PlanarContacts<PinInSlot> {
         start_(p) {
     if (!sizes.radii.known() && !is_inert(laws().friction))
       throw BadParameter("clearance", "missing-key", "friction needs 'slot_width' or 'pin_radius'");
+    if (sizes.radii.known() && !(sizes.radii.clearance < 2.0 * sizes.radii.journal))
+      throw BadParameter("clearance.gap", "out-of-range",
+                         "'gap' must be below twice 'pin_radius': the play is wider than the pin");
     // The sizes are rounded numbers: a pin at the wall is none in it.
     if (std::abs(start_.shift) > (1.0 + 1e-9) * geometry().play)
       throw BadParameter("clearance.initial.eccentricity", "out-of-range",

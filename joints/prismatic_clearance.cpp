@@ -133,6 +133,7 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
     for (const char* height : {"clearance.guide_height", "clearance.height", "clearance.gap_height"})
       if (p.given(height))
         throw BadParameter(height, "type-space", "a slider has a height in spatial models only; its width is 'width'");
+    refuse_tilt(p, "a slider of a planar model turns about one axis: give 'angle' and 'speed'");
     const BlockInGuide& block = geometry();
     if (widths.known() && !(block.play < 2.0 * widths.journal))
       throw BadParameter("clearance.gap", "out-of-range",
@@ -199,11 +200,21 @@ constexpr Parameter tilt_rows[] = {
     {.name = "clearance.initial.angle",
      .unit = "rad",
      .default_value = optional,
-     .summary = "Angle of the slider against the guide at the start."},
+     .summary = "Planar models: angle of the slider against the guide at the start."},
     {.name = "clearance.initial.speed",
      .unit = "rad/s",
      .default_value = optional,
-     .summary = "Angular velocity of the slider against the guide at the start."},
+     .summary = "Planar models: angular velocity of the slider against the guide at the start."},
+    {.name = "clearance.initial.tilt",
+     .kind = ParameterKind::vector,
+     .unit = "rad",
+     .default_value = optional,
+     .summary = "Spatial models: rotation vector of the slider in its guide at the start, in the axes of the guide."},
+    {.name = "clearance.initial.tilt_speed",
+     .kind = ParameterKind::vector,
+     .unit = "rad/s",
+     .default_value = optional,
+     .summary = "Spatial models: angular velocity of the slider in its guide at the start, in the axes of the guide."},
 };
 constexpr auto prismatic_clearance_parameters = joined(width_rows, law_rows, wall_start_rows, tilt_rows);
 

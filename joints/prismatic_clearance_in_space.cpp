@@ -7,7 +7,7 @@
 #include "freeplay/kit/contact_events.h"
 #include "freeplay/kit/planar_marker.h"
 #include "freeplay/kit/wall_play.h"
-#include "wall_contacts.h"
+#include "resting_block.h"
 
 namespace freeplay {
 namespace play {
@@ -37,6 +37,7 @@ struct BarInGuide {
 
   static std::array<double, 5> stand(const TurnedMotion<double>& m) { return {m.d.y, m.d.z, m.r.x, m.r.y, m.r.z}; }
   static constexpr bool between_walls() { return true; }
+  std::array<double, 3> levers() const { return {half_length, half_width, half_height}; }
 
   double half_length, half_width, half_height;  ///< [m]
   double gap, gap_height;                       ///< play to each side along y and z [m]
@@ -151,6 +152,7 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     layout.play_shape = PlayShape::walls;
     layout.clearance = std::max(geometry().gap, geometry().gap_height);
     layout.contact_length = 2.0 * geometry().half_length;
+    layout.play_bounds = {bounds_.data(), bounds_.size()};
     layout.events = {all_bar_events.data(), all_bar_events.size()};
     layout.event_roles = {all_bar_roles.data(), all_bar_roles.size()};
     layout.channels = bar_channels;
@@ -163,38 +165,61 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     b_in_a = planar::pose(position, 0.0);
     return true;
   }
-  /// Loaded, all four corners of a side carry alike; the moment of the ideal joint is not carried.
+  /// Loaded, the corners carry force and moment together.
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
-    const double* rotation = out.rotation;
-    out = InitialOffset{};
-    out.rotation = rotation;
+    clear_start(out);
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    if (rotation != nullptr) axes = Eigen::Map<const RowMajor3>(rotation);
-    Eigen::Vector3d shift(0.0, shift_[0], shift_[1]);
+    if (out.rotation != nullptr) axes = Eigen::Map<const RowMajor3>(out.rotation);
+    BlockStand stand{Eigen::Vector3d(0.0, shift_[0], shift_[1]), Eigen::Map<const Eigen::Vector3d>(tilt_.tilt.data())};
     if (loaded_) {
-      const Eigen::Vector3d load = axes.transpose() * Eigen::Vector3d(reaction[0], reaction[1], reaction[2]);
-      shift = {0.0, rest_at_wall(laws().normal, geometry().gap, 0.5 * load.y(), 0.0),
-               rest_at_wall(laws().normal, geometry().gap_height, 0.5 * load.z(), 0.0)};
+      const auto load = [&](std::size_t first) -> Eigen::Vector3d {
+        if (first + 3 > reaction.size) return Eigen::Vector3d::Zero();
+        return axes.transpose() * Eigen::Map<const Eigen::Vector3d>(reaction.data + first);
+      };
+      stand = RestingBlock(geometry(), laws().normal, load(0), load(3)).stand();
     }
-    Eigen::Map<Eigen::Vector3d>(out.position) = axes * shift;
+    Eigen::Map<Eigen::Vector3d>(out.position) = axes * stand.shift;
+    Eigen::Map<Eigen::Vector3d>(out.tilt) = axes * stand.turn;
     Eigen::Map<Eigen::Vector3d>(out.velocity) = axes * Eigen::Vector3d(0.0, shift_rate_[0], shift_rate_[1]);
+    Eigen::Map<Eigen::Vector3d>(out.tilt_rate) = axes * Eigen::Map<const Eigen::Vector3d>(tilt_.tilt_rate.data());
   }
 
  private:
   BarWithPlay(const Parameters& p, const BarInGuide& bar)
-      : WallContacts(bar, SpatialLaws(p, surfaces(p, bar), true)), loaded_(WallStart(p).loaded) {
+      : WallContacts(bar, SpatialLaws(p, surfaces(p, bar), true)), loaded_(WallStart(p).loaded), tilt_(p) {
+    set_bounds();
     for (const char* turned : {"clearance.initial.angle", "clearance.initial.speed"})
       if (p.given(turned))
         throw BadParameter(turned, "type-space",
-                           "a slider in a spatial model starts straight in its guide: give 'eccentricity' and "
-                           "'velocity'");
+                           "a slider in a spatial model may turn about three axes: give 'tilt' and 'tilt_speed'");
     if (p.word("clearance.initial") >= 0) return;
     read_start(p, "clearance.initial.eccentricity", shift_);
     read_start(p, "clearance.initial.velocity", shift_rate_);
-    // The sizes are rounded numbers: a corner at the wall is none in it.
-    if (std::abs(shift_[0]) > (1.0 + 1e-9) * bar.gap || std::abs(shift_[1]) > (1.0 + 1e-9) * bar.gap_height)
-      throw BadParameter("clearance.initial", "out-of-range",
-                         "the slider would start in the wall: it may be shifted by the gap to each side");
+    RelativeMotion<double> motion{};
+    motion.d = {0.0, shift_[0], shift_[1]};
+    motion.r = {tilt_.tilt[0], tilt_.tilt[1], tilt_.tilt[2]};
+    const TurnedMotion<double> start(motion);
+    for (std::size_t i = 0; i < BarInGuide::contacts; ++i) {
+      // The sizes are rounded numbers: a corner at the wall is none in it.
+      if (!(dot(motion.r, motion.r) < 1.0) || bar.place(start, i).penetration > 1e-9 * bar.play)
+        throw BadParameter("clearance.initial", "out-of-range",
+                           "a corner of the slider would start in the wall: what shift and tilt move it by must stay "
+                           "within the gap to each side together");
+    }
+  }
+  /// Of one pair of walls, with the signs of the corners: |y + l theta_z - B_z theta_x| <= g and |z - l theta_y +
+  /// B theta_x| <= g_z.
+  void set_bounds() {
+    const BarInGuide& bar = geometry();
+    double* to = bounds_.data();
+    for (const double end : {1.0, -1.0}) {
+      for (const double side : {1.0, -1.0}) {
+        const double across[] = {bar.gap, 0.0, 1.0, 0.0, -side * bar.half_height, 0.0, end * bar.half_length},
+                     up[] = {bar.gap_height, 0.0, 0.0, 1.0, side * bar.half_width, -end * bar.half_length, 0.0};
+        to = std::copy(std::begin(across), std::end(across), to);
+        to = std::copy(std::begin(up), std::end(up), to);
+      }
+    }
   }
   static void read_start(const Parameters& p, const char* path, std::array<double, 2>& across) {
     across = {WallStart::across(p, path), p.vector(path)[2]};
@@ -239,7 +264,9 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
   }
 
   bool loaded_;
+  TiltStart tilt_;
   std::array<double, 2> shift_{}, shift_rate_{};  ///< along y and z [m], [m/s]
+  std::array<double, 56> bounds_{};               ///< JointLayout::play_bounds
 };
 
 }  // namespace

@@ -74,6 +74,7 @@ class RevoluteClearance final : public Joint {
     require_radii(radii_, friction_law_);
     if (p.given("clearance.axial_clearance"))
       throw BadParameter("clearance.axial_clearance", "type-space", "only a spatial model has play along the axis");
+    refuse_tilt(p, "only a journal in a spatial model tilts in its bearing");
   }
 
   void declare(JointLayout& layout) const override {
@@ -323,7 +324,8 @@ class RevoluteClearance final : public Joint {
   Start start_;
 };
 
-constexpr auto revolute_clearance_parameters = joined(radius_rows, bearing_length_rows, law_rows, start_rows);
+constexpr auto revolute_clearance_parameters =
+    joined(radius_rows, bearing_length_rows, law_rows, start_rows, tilt_start_rows);
 
 }  // namespace
 }  // namespace play

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "freeplay/kit/planar_marker.h"
-#include "revolute_play_ends.h"
+#include "journal_start.h"
 
 namespace freeplay {
 namespace play {
@@ -32,7 +32,7 @@ class PinInSpace final : public Joint {
  public:
   static constexpr std::size_t contacts_kept = way == Kept::by_shoulders ? places : std::size_t{lower_end} + 1;
 
-  explicit PinInSpace(const Parameters& p) : play_(p, p.number("clearance.length")) {
+  explicit PinInSpace(const Parameters& p) : play_(p, p.number("clearance.length")), tilt_(p) {
     const double length = p.number("clearance.length");
     if (std::isnan(length))
       throw BadParameter("clearance", "missing-key", "a bearing in a spatial model needs its 'length'");
@@ -49,6 +49,7 @@ class PinInSpace final : public Joint {
     layout.forces = 1;
     layout.internal_variables = ends * play_.memory();
     layout.analytic_derivatives = 1;
+    layout.free_turns = 1;
     layout.clearance = play_.radii.clearance;
     play_.surfaces.declare(layout);
     layout.events = {end_events, 2 * contacts_kept};
@@ -234,24 +235,22 @@ class PinInSpace final : public Joint {
     }
     return nullptr;
   }
-  /// The load rests on both ends alike and on a shoulder; the moment of the ideal joint is not carried.
+  /// Nothing nears a wall by more than the way of the journal, a little more where its axis leans.
+  double free_distance(const JointInput& in) const override {
+    double free = unbounded;
+    const RelativeMotion<double> motion = motion_of(in);
+    for (std::size_t i = 0; i < contacts_kept; ++i) {
+      if (contact_input(in, i).history[phase] != flight) return 0.0;
+      free = std::min(free, -gap(motion, i).penetration);
+    }
+    return free > 0.0 ? free_way(motion, free, bearing_.lever(motion)) : 0.0;
+  }
+  void free_levers(const JointInput& in, Span<double> levers) const override {
+    levers[0] = levers[1] = 0.0;
+    levers[2] = bearing_.lever(motion_of(in));
+  }
   void initial_offset(Span<const double> reaction, InitialOffset& out) const override {
-    const double* rotation = out.rotation;
-    out = play_.start.offset;
-    out.rotation = rotation;
-    if (!play_.start.loaded) return;
-    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    if (rotation != nullptr) axes = Eigen::Map<const RowMajor3>(rotation);
-    const Eigen::Vector3d load = axes.transpose() * Eigen::Vector3d(reaction[0], reaction[1], reaction[2]);
-    const double radial = load.head<2>().norm(), axial = std::abs(load.z()), clearance = play_.radii.clearance;
-    Eigen::Vector3d place = Eigen::Vector3d::Zero();
-    // The bearing pushes the journal along -n.
-    if (radial >= 1e-12)
-      place.head<2>() = -(clearance + resting_penetration(play_.normal, clearance, radial)) / radial * load.head<2>();
-    if (way == Kept::by_shoulders && axial >= 1e-12)
-      place.z() =
-          -std::copysign(bearing_.axial_clearance + resting_penetration(play_.normal, clearance, axial), load.z());
-    Eigen::Map<Eigen::Vector3d>(out.position) = axes * place;
+    write_journal_start(play_, bearing_, tilt_, way == Kept::by_shoulders, reaction, out);
   }
 
  private:
@@ -438,6 +437,7 @@ class PinInSpace final : public Joint {
   }
 
   SpatialPlay play_;
+  TiltStart tilt_;
   Bearing bearing_{};
 };
 

@@ -93,6 +93,10 @@ struct Bearing {
   EndGap<T> end(const RelativeMotion<T>& x, std::size_t place, const SpatialPlay& play) const {
     return {x, side(place), half_length, play};
   }
+  /// From the journal's origin along its axis to the farther end plane [m].
+  double lever(const RelativeMotion<double>& x) const {
+    return (half_length + std::abs(x.d.z)) / std::max(x.r.z, 1e-3);
+  }
   template <class T>
   ShoulderGap<T> shoulder(const RelativeMotion<T>& x, std::size_t place) const {
     return {x, side(place), axial_clearance};

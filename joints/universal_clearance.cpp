@@ -35,8 +35,8 @@ constexpr Parameter cross_rows[] = {
      .minimum = 0.0,
      .open = Open::minimum,
      .summary = "Moments of inertia of the cross about its first pin, its second pin and across both."}};
-constexpr auto universal_clearance_parameters =
-    play::joined(play::radius_rows, bearing_length_rows, play::law_rows, play::start_rows, cross_rows);
+constexpr auto universal_clearance_parameters = play::joined(play::radius_rows, bearing_length_rows, play::law_rows,
+                                                             play::start_rows, play::tilt_start_rows, cross_rows);
 
 constexpr JointChain cross_chain{.first = {"first", "revolute-clearance", {1.0, 0.0, 0.0}},
                                  .second = {"second", "revolute-clearance", {0.0, 1.0, 0.0}},

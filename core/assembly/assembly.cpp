@@ -35,6 +35,21 @@ using Eigen::VectorXd;
 enum class Account { full, none };
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr int most_rounds_of_loads = 6;
+constexpr double same_tilt = 1e-10;  // of a tilt
+
+/// Whether any tilt has changed.
+bool tilts_otherwise(const std::vector<InitialOffset>& before, const std::vector<InitialOffset>& now) {
+  for (std::size_t j = 0; j < now.size(); ++j) {
+    double apart = 0.0, size = 0.0;
+    for (int i = 0; i < 3; ++i) {
+      apart = std::hypot(apart, now[j].tilt[i] - before[j].tilt[i]);
+      size = std::hypot(size, now[j].tilt[i]);
+    }
+    if (apart > same_tilt * size) return true;
+  }
+  return false;
+}
 
 // The closed mechanism at the start time and the rows that hold it there.
 class Assembler {
@@ -58,9 +73,13 @@ class Assembler {
     solve_positions();
     check_paths();
     solve_speeds();
-    if (load_journals()) {
+    // A journal that tilts moves its loads, and they what it stands off by.
+    for (int round = 0; round < most_rounds_of_loads; ++round) {
+      const std::vector<InitialOffset> before = offsets_;
+      if (!load_journals()) break;
       solve_positions();
       solve_speeds();
+      if (!tilts_otherwise(before, offsets_)) break;
     }
     if (account_ == Account::full) {
       report_.moved = moved_starts(closed_, state_.q(), state_.v());
@@ -161,12 +180,17 @@ class Assembler {
       std::array<double, 6> wrench = reactions.empty() ? std::array<double, 6>{} : reactions[at(j)];
       InitialOffset offset{};
       Message message;
-      if (!reactions.empty()) offset.rotation = e_.markers[at(joint.marker_a)].rotation;
+      if (!reactions.empty()) {
+        offset.a = &e_.markers[at(joint.marker_a)];
+        offset.b = &e_.shifted[at(j)];
+        offset.rotation = offset.a->rotation;
+      }
       if (!joint.joint.initial_offset({wrench.data(), wrench.size()}, offset, message)) {
         throw Error(Error::Category::input, "assembly-failed",
                     fmt::format("joint '{}' has no start: {}", joint.name, message.text), joint.location);
       }
       offset.rotation = nullptr;
+      offset.a = offset.b = nullptr;
       if (change_) change_(j, offset);
       moved = moved || !reactions.empty();
       offsets_[at(j)] = offset;
@@ -220,7 +244,8 @@ class Assembler {
   // Redundant constraints that close with all journals centred leave these fewer places than they have directions.
   bool yield(const std::vector<double>& guess, bool first) {
     const auto moves = [](const InitialOffset& one) {
-      return std::hypot(one.position[0], one.position[1], one.position[2]) > 0.0;
+      return std::hypot(one.position[0], one.position[1], one.position[2]) > 0.0 ||
+             std::hypot(one.tilt[0], one.tilt[1], one.tilt[2]) > 0.0;
     };
     if (std::ranges::none_of(offsets_, moves)) return false;
     for (int j = 0; j < static_cast<int>(offsets_.size()); ++j) {
@@ -342,7 +367,7 @@ class Assembler {
     start.facts.actual = facts_of(system_);
     if (!full) return start;
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
-    start.structure = examine_structure(system_, released, closed_, e_, dead_start(system_, start.state),
+    start.structure = examine_structure(system_, released, start.state, closed_, e_, dead_start(system_, start.state),
                                         unstable_start(system_, start.state));
     return start;
   }

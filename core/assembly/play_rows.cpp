@@ -83,6 +83,7 @@ double share_inside(ClosedMechanism& mechanism, const std::vector<InitialOffset>
 
 bool gives_eccentricity(const JointElement& joint) { return gives(joint, "initial.eccentricity"); }
 bool gives_velocity(const JointElement& joint) { return gives(joint, "initial.velocity"); }
+bool gives_tilt(const JointElement& joint) { return gives(joint, "initial.tilt"); }
 
 std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
                                  const std::function<bool(const JointElement&)>& gives_start) {
@@ -97,7 +98,7 @@ std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
   if (std::ranges::none_of(model.joints, [&](const JointElement& one) { return one.has_play && gives_start(one); })) {
     return ranks;
   }
-  // A block gives where a journal is and how fast it moves, but no tilt: those are rows on shifts.
+  // A block gives where a journal is and how fast it moves: those are rows on shifts. The others are of its tilt.
   const ClosedMechanism::Rows rows = mechanism.position_rows();
   std::vector<char> shifts(ranks.size(), 0);
   for (Eigen::Index outer = 0; outer < rows.matrix.outerSize(); ++outer) {
@@ -112,7 +113,7 @@ std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
     if (!joint.has_play || !gives_start(joint)) continue;
     const Slice slice = closed.layout().rows(j);
     for (int r = slice.offset; r < slice.offset + slice.size; ++r) {
-      if (shifts[at(r)]) ranks[at(r)] = PlayRank::given;
+      if (shifts[at(r)] || gives_tilt(joint)) ranks[at(r)] = PlayRank::given;
     }
   }
   return ranks;
@@ -140,6 +141,7 @@ bool yield_in_play(ClosedMechanism& mechanism, std::vector<InitialOffset> offset
     for (InitialOffset& offset : offsets) {
       for (double& e : offset.position) e *= inside * share;
       offset.turn *= inside * share;
+      for (double& angle : offset.tilt) angle *= inside * share;
     }
   }
   std::ranges::copy(centred, mechanism.state.q().begin());

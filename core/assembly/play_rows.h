@@ -15,10 +15,11 @@ enum class PlayRank { constraint, given, implied };
 /// Whether the block of a joint with play gives the eccentricity or the velocity of its journal, be it zero.
 bool gives_eccentricity(const JointElement& joint);
 bool gives_velocity(const JointElement& joint);
+bool gives_tilt(const JointElement& joint);
 
 /// By row of the closed mechanism: rows of joints with play that hold shifts are `given` where gives(joint); those that
-/// hold turns alone, as of the tilts of a journal, and all others of these joints are `implied`; the rest are
-/// constraints.
+/// hold turns alone, as of the tilts of a journal whose block gives none, and all others of these joints are `implied`;
+/// the rest are constraints.
 std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism, const std::function<bool(const JointElement&)>& gives);
 
 /// Moves the mechanism, which stands with all journals centred, to where constraints hold and journals are as near to

@@ -31,8 +31,9 @@ constexpr double deep_start = 1.5;          // eccentricity of a journal, by its
 
 class Examination {
  public:
-  Examination(const System& released, const Evaluation& open, const System& closed, const Evaluation& shut)
-      : model_(released.model()), released_(released), closed_(closed), open_(open), shut_(shut) {
+  Examination(const System& released, const Evaluation& open, const State& start, const System& closed,
+              const Evaluation& shut)
+      : model_(released.model()), released_(released), closed_(closed), open_(open), start_(start), shut_(shut) {
     for (const JacobianBlock& block : closed.jacobian().blocks()) blocks_.emplace(block.row, &block);
   }
 
@@ -152,13 +153,37 @@ class Examination {
       const Eigen::Vector3d axis(a.rotation[2], a.rotation[5], a.rotation[8]);
       if (pin) apart -= axis.dot(apart) * axis;
       const double eccentricity = apart.norm();
-      if (eccentricity <= deep_start * play) continue;
+      if (eccentricity <= deep_start * play) {
+        judge_depth(j);
+        continue;
+      }
       doubt("doubtful-clearance",
             fmt::format("the {} of joint '{}' starts {:.3g} m from the {}, {:.3g} m deep in its wall, as the clearance "
                         "is {:.3g} m: check 'initial' and the clearance",
                         slide ? "slider" : "journal", joint.name, eccentricity,
                         slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play),
             joint.name, joint.location);
+    }
+  }
+
+  /// The same of what stands in the middle: past the end of its slot, or tilted.
+  void judge_depth(int j) {
+    const JointElement& joint = model_.joints[at(j)];
+    for (std::size_t channel = 0; channel < joint.layout.channels.size; ++channel) {
+      if (channel_role(joint.layout, channel) != ChannelRole::penetration) continue;
+      std::vector<double> values(joint.layout.channels.size, 0.0);
+      Message message;
+      const JointInput in = released_.joints().input(j, point(start_), open_);
+      if (!joint.joint.observe(in, {}, {values.data(), values.size()}, message)) return;  // the run will say why
+      const double depth = values[channel], play = joint.layout.clearance;
+      if (!(depth > (deep_start - 1.0) * play)) return;
+      doubt(
+          "doubtful-clearance",
+          fmt::format("joint '{}' starts {:.3g} m deep in its wall, as the clearance is {:.3g} m: check 'initial', the "
+                      "poses of its bodies and the clearance",
+                      joint.name, depth, play),
+          joint.name, joint.location);
+      return;
     }
   }
 
@@ -346,6 +371,7 @@ class Examination {
   const System& released_;
   const System& closed_;
   const Evaluation& open_;
+  const State& start_;
   const Evaluation& shut_;
   std::multimap<int, const JacobianBlock*> blocks_;  // of the closed system, by their first row
   std::vector<int> bypassed_;
@@ -355,10 +381,10 @@ class Examination {
 
 }  // namespace
 
-Structure examine_structure(const System& released, const Evaluation& at_start, const System& closed,
-                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead,
-                            const std::optional<UnstableStart>& unstable) {
-  return Examination(released, at_start, closed, closed_at_start).run(dead, unstable);
+Structure examine_structure(const System& released, const Evaluation& at_start, const State& start,
+                            const System& closed, const Evaluation& closed_at_start,
+                            const std::optional<DeadStart>& dead, const std::optional<UnstableStart>& unstable) {
+  return Examination(released, at_start, start, closed, closed_at_start).run(dead, unstable);
 }
 
 }  // namespace freeplay

@@ -32,11 +32,11 @@ struct Structure {
 };
 
 /// Both systems stand at the start: `released` as it runs, `closed` with every clearance closed; their evaluations hold
-/// positions and coordinates. `dead`: a driver that starts at a dead point, where ranks say little of what is free.
-/// Doubts: `locked`, `not-connected`, `duplicate-joint`, `play-bypassed`, `left-free`, `dead-point`, `unstable-start`,
-/// and those of doubt_forces().
-Structure examine_structure(const System& released, const Evaluation& at_start, const System& closed,
-                            const Evaluation& closed_at_start, const std::optional<DeadStart>& dead,
-                            const std::optional<UnstableStart>& unstable);
+/// positions and coordinates, `start` the state of the released one. `dead`: a driver that starts at a dead point,
+/// where ranks say little of what is free. Doubts: `locked`, `not-connected`, `duplicate-joint`, `play-bypassed`,
+/// `left-free`, `dead-point`, `unstable-start`, and those of doubt_forces().
+Structure examine_structure(const System& released, const Evaluation& at_start, const State& start,
+                            const System& closed, const Evaluation& closed_at_start,
+                            const std::optional<DeadStart>& dead, const std::optional<UnstableStart>& unstable);
 
 }  // namespace freeplay

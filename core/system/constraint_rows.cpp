@@ -66,6 +66,7 @@ bool Constraints::make_rows(const Point& point, Evaluation& e) const {
     if (!is_finite({jacobian, at(static_cast<int>(gamma - jacobian)) + count}) && are_finite(joint, e)) {
       return e.fault.refuse(j, "it returned a row that is not a finite number");
     }
+    if (joint.stands_off) joints_.untilt(j, out.jacobian);
     const std::size_t first = at(own.rows.offset);
     std::copy_n(phi, count, &e.phi[first]);
     std::copy_n(nu, count, &e.nu[first]);
@@ -87,6 +88,7 @@ bool Constraints::make_rows(const Point& point, Evaluation& e) const {
     for (std::size_t r = 0; r < count; ++r) {
       for (std::size_t i = 0; i < 3; ++i) e.nu[first + r] += jacobian[12 * r + 6 + i] * offset.velocity[i];
       e.nu[first + r] += jacobian[12 * r + 11] * offset.turn_rate;
+      for (std::size_t i = 0; i < 3; ++i) e.nu[first + r] += jacobian[12 * r + 9 + i] * offset.tilt_rate[i];
     }
   }
   return true;

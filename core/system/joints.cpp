@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "base/angle.h"
 #include "base/index.h"
 #include "system/evaluation.h"
@@ -29,6 +31,27 @@ unsigned own_terms(const JointLayout& layout, int turn) {
   if (layout.forces != 0) terms |= term_force;
   if (!layout.events.empty() || layout.history > 0) terms |= term_event;
   return terms;
+}
+
+/// Turn by the tilt that a joint starts with; false where it has none.
+bool tilts(const InitialOffset& offset, Eigen::Matrix3d& turn) {
+  const Eigen::Map<const Eigen::Vector3d> tilt(offset.tilt);
+  const double angle = tilt.norm();
+  if (!(angle > 0.0)) return false;
+  turn = Eigen::AngleAxisd(angle, tilt / angle).toRotationMatrix();
+  return true;
+}
+
+/// The second marker as the ideal twin sees it, without the tilt and its rate.
+void tilt_back(const InitialOffset& offset, const MarkerKinematics& a, MarkerKinematics& b) {
+  const Eigen::Map<const Eigen::Vector3d> rate(offset.tilt_rate), w_a(a.angular_velocity);
+  Eigen::Map<Eigen::Vector3d> w_b(b.angular_velocity);
+  w_b -= rate;
+  Eigen::Matrix3d turn;
+  if (!tilts(offset, turn)) return;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(b.rotation);
+  axes = (turn.transpose() * axes).eval();
+  w_b = (w_a + turn.transpose() * (w_b - w_a)).eval();
 }
 
 }  // namespace
@@ -85,6 +108,17 @@ Joints::Joints(const Model& model, Variant variant, const Layout& layout, const 
   }
 }
 
+void Joints::untilt(int joint, Span<double> jacobian) const {
+  Eigen::Matrix3d turn;
+  if (!tilts(offsets_[at(joint)], turn)) return;
+  for (std::size_t r = 0; r < jacobian.size; r += 12) {
+    Eigen::Map<Eigen::Vector3d> of_a(jacobian.data + r + 3), of_b(jacobian.data + r + 9);
+    const Eigen::Vector3d seen = of_b;
+    of_b = turn * seen;
+    of_a += seen - of_b;
+  }
+}
+
 void Joints::shift_all(Evaluation& e) const {
   for (std::size_t j = 0; j < records_.size(); ++j) {
     if (!records_[j].stands_off) continue;
@@ -93,6 +127,7 @@ void Joints::shift_all(Evaluation& e) const {
       k.position[i] -= offsets_[j].position[i];
       k.velocity[i] -= offsets_[j].velocity[i];
     }
+    if (model_.space == Space::spatial) tilt_back(offsets_[j], e.markers[at(records_[j].marker_a)], k);
     if (offsets_[j].turn == 0.0 && offsets_[j].turn_rate == 0.0) continue;
     const double c = std::cos(offsets_[j].turn), s = std::sin(offsets_[j].turn);
     for (int column = 0; column < 2; ++column) {
@@ -121,6 +156,7 @@ bool Joints::evaluate_coordinates(const Point& point, unsigned terms, Evaluation
     }
     e.coordinate[at(j)] = row.value;
     e.coordinate_rate[at(j)] = rate_of(row.jacobian, *in.a, *in.b);
+    if (record.stands_off) untilt(j, row.jacobian);
   }
   return true;
 }

@@ -58,6 +58,10 @@ class Joints {
 
   /// Numbers that no motion changes.
   void write_constants(JointValues& values) const { declared_.write_constants(values); }
+  /// Of a joint that stands off by a tilt: rows that its twin made for the second marker as that stands for it become
+  /// those of the marker itself; `jacobian` has 12 numbers for each. With E the turn by the tilt, which goes with the
+  /// first body, the twin sees w_a + E^T (w_b - tilt_rate - w_a).
+  void untilt(int joint, Span<double> jacobian) const;
   /// Closed variant, once markers have moved: second markers that stand off.
   void shift(Evaluation& e) const {
     if (variant_ == Variant::closed) shift_all(e);

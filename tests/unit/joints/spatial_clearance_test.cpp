@@ -290,6 +290,29 @@ TEST(RevoluteClearanceInSpace, LoadRestsInTheAxesOfTheBearing) {
   EXPECT_NEAR(place.z(), -(c + depth(12.0)), 1e-15);
 }
 
+// On one side of the bearing, on opposite ones, and on a shoulder; what the tilt, 2 c/L at most, does to the arms is
+// left out in squares.
+TEST(RevoluteClearanceInSpace, LoadedItExertsForceAndMomentOfTheReaction) {
+  const Component component = in_space(row());
+  ParameterStub stub = stub_of(component, false);
+  stub.numbers["clearance.length"] = bearing_length;
+  stub.words["clearance.initial"] = 1;
+  SpatialForce f(component, stub);
+  f.a = marker({0.1, -0.2, 0.3}, turn({0.4, -0.7, 0.9}));
+  const Matrix3d axes = rotation(f.a);
+  for (const Vector3d& moment : {Vector3d(0.0, 0.0, 0.0), Vector3d(0.01, -0.02, 0.0), Vector3d(-0.4, 0.3, 0.0)}) {
+    Eigen::Matrix<double, 6, 1> load;
+    load << axes * Vector3d(30.0, -40.0, 12.0), axes * moment;
+    const InitialOffset offset = f.offset(load);
+    f.b = marker(vector3(f.a.position) + vector3(offset.position), turn(vector3(offset.tilt)) * axes);
+    const double size = 50.0 + moment.norm() / bearing_length;
+    const Wrenches w = f.apply();
+    EXPECT_NEAR((w.segment<3>(6) - load.head<3>()).norm(), 0.0, 1e-3 * size);
+    EXPECT_NEAR((w.segment<3>(9) - load.tail<3>()).norm(), 0.0, 1e-3 * size * bearing_length);
+    EXPECT_GT(vector3(offset.tilt).norm(), moment.norm() > 0.0 ? 1e-4 : -1.0);
+  }
+}
+
 TEST(RevoluteClearanceInSpace, NeedsItsLengthAndAFrictionThatItCanKeep) {
   const Component component = in_space(row());
   ParameterStub stub = stub_of(component, false);

@@ -63,6 +63,15 @@ class SpatialForce {
     joint_.call(&abi::JointTable::initial_offset, Span<const double>(load.data(), 3), &out);
     return out;
   }
+  /// Of force and moment, where a stands.
+  InitialOffset offset(const Eigen::Matrix<double, 6, 1>& load) const {
+    InitialOffset out{};
+    out.rotation = a.rotation;
+    out.a = &a;
+    out.b = &b;
+    joint_.call(&abi::JointTable::initial_offset, Span<const double>(load.data(), 6), &out);
+    return out;
+  }
   double power() const { return apply().dot(twists(a, b)); }
 
   JointLayout layout;
