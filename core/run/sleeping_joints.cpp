@@ -1,5 +1,6 @@
 #include "run/sleeping_joints.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/index.h"
@@ -24,8 +25,13 @@ SleepingJoints::SleepingJoints(const Joints& joints, const Forces& forces, Evalu
     if (blocks[at(f)].internal != 0) continue;
     candidates_.push_back({j, f, joints[j].marker_a, joints[j].marker_b});
     const JointLayout& layout = joints.layout(j);
-    if (layout.space == Space::planar && layout.clearance > 0.0 && plays_between_walls(layout))
-      context.sleeps[at(j)].reach = layout.contact_reach;
+    Sleep& sleep = context.sleeps[at(j)];
+    if (layout.space == Space::planar && layout.clearance > 0.0 && plays_between_walls(layout)) {
+      sleep.kind = Sleep::Kind::walls;
+      sleep.reach = layout.contact_reach;
+    } else if (layout.space == Space::spatial && layout.free_turns != 0) {
+      sleep.kind = Sleep::Kind::turns;
+    }
   }
 }
 
@@ -50,7 +56,12 @@ bool SleepingJoints::begin(double dt, const Point& start, const Evaluation& e, F
     if (!joint.joint.free_distance(Joints::input(joint, start, e), distance, fault.message))
       return fault.blame(candidate.joint);
     if (!(distance > 0.0)) continue;
-    const bool is_cubic = sleep.reach == Sleep::round;
+    if (sleep.kind == Sleep::Kind::turns) {
+      std::ranges::fill(sleep.levers, 0.0);
+      if (!joint.joint.free_levers(Joints::input(joint, start, e), sleep.levers, fault.message))
+        return fault.blame(candidate.joint);
+    }
+    const bool is_cubic = sleep.kind == Sleep::Kind::round;
     sleep.radius = (1.0 - (is_cubic ? rounding_off : no_cubic)) * distance;
     sleep.place(e.markers[at(candidate.marker_a)], e.markers[at(candidate.marker_b)], sleep.from);
     if (std::isinf(dt)) continue;
