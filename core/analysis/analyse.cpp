@@ -31,12 +31,15 @@ AnalysisTable workspace(IdealMechanism& mechanism, const AnalysisRequest& reques
   return table;
 }
 
-/// The walls of a slider in space bound its shifts and turns together, which no sum of independent plays does.
-void refuse_sliders_in_space(const Model& model) {
+/// The walls of a slider in space bound its shifts and turns together: unless it says how, its play is not known.
+void refuse_unknown_sliders(const Model& model) {
   for (const JointElement& joint : model.joints) {
     if (model.space == Space::planar || !joint.has_play || !plays_between_walls(joint.layout)) continue;
+    if (!joint.layout.play_bounds.empty()) continue;
     throw Error(Error::Category::input, "type-space",
-                fmt::format("joint '{}' is a slider with play in space, whose errors are not known", joint.name),
+                fmt::format("joint '{}' is a slider in space that does not declare the bounds of its play, so that its "
+                            "errors are not known",
+                            joint.name),
                 joint.location, "--ideal closes it");
   }
 }
@@ -53,7 +56,7 @@ AnalysisTable rows(IdealMechanism& mechanism, const AnalysisRequest& request, co
     case AnalysisKind::singularity:
       return singularity_rows(mechanism, all, stations.given(), request.threads, tick);
     case AnalysisKind::error:
-      refuse_sliders_in_space(mechanism.model());
+      refuse_unknown_sliders(mechanism.model());
       if (mechanism.plays().empty() && mechanism.input_error() == 0.0) {
         warnings.push_back("no joint has clearance and no input errs: all errors are 0");
       }

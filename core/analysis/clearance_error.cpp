@@ -7,7 +7,9 @@ namespace freeplay {
 
 std::vector<Generator> generators_of(const IdealMechanism& mechanism, const VelocityMap& map) {
   std::vector<Generator> out;
-  for (const Play& play : mechanism.plays()) out.push_back({map.c.middleCols(play.place, play.size), play.radius});
+  for (const Play& play : mechanism.plays()) {
+    out.push_back({map.c.middleCols(play.place, play.size), play.radius, play.hull.get()});
+  }
   for (Eigen::Index i = 0; i < map.b.cols(); ++i) out.push_back({map.b.col(i), mechanism.input_error()});
   return out;
 }
@@ -37,7 +39,7 @@ std::optional<ClearanceError> clearance_error(const IdealMechanism& mechanism, c
   out.least_squares = least_squares_worst_case(*inverse, moving);
   out.exact = map.a.rows() == map.a.cols() ? out.least_squares : exact_worst_case(map.a, moving);
   for (const Generator& generator : generators) {
-    out.sensitivity.push_back((generator.columns.transpose() * out.exact.multipliers).norm());
+    out.sensitivity.push_back(generator.support(out.exact.multipliers));
   }
   return out;
 }

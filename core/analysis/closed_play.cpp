@@ -50,6 +50,15 @@ void ClosedPlay::walk_over_discs() {
   double least = -std::numeric_limits<double>::infinity(), most = -least;
   for (const PlayRoom& room : rooms_) {
     const VectorXd u = direction.segment(room.place, room.size), y = plays_.segment(room.place, room.size);
+    if (room.hull != nullptr) {
+      const VectorXd rise = room.hull->facets * u, at = room.hull->facets * y;
+      for (Index i = 0; i < rise.size(); ++i) {
+        if (rise[i] == 0.0) continue;
+        least = std::max(least, std::min(0.0, -(at[i] + std::copysign(1.0, rise[i])) / rise[i]));
+        most = std::min(most, std::max(0.0, (std::copysign(1.0, rise[i]) - at[i]) / rise[i]));
+      }
+      continue;
+    }
     const double a = u.squaredNorm(), b = u.dot(y), c = y.squaredNorm() - 1.0;
     if (!(a > 0.0)) continue;
     const double root = std::sqrt(std::max(0.0, b * b - a * c));

@@ -5,19 +5,21 @@
 
 #include <Eigen/Core>
 
+#include "analysis/play_hull.h"
 #include "analysis/play_law.h"
 
 namespace freeplay {
 
-/// An interval (1 number), a disc (2) or a ball (3) of size 1 among the plays.
+/// An interval (1 number), a disc (2) or a ball (3) of size 1 among the plays, or a polytope.
 struct PlayRoom {
   Eigen::Index place, size;
+  const PlayHull* hull = nullptr;
 };
 
 /// Plays y in their rooms with closure y = 0, distributed as independent plays are, given that they close. Both walks
 /// leave that law as it is: over discs a random chord (hit and run; Smith 1984), on which a normal law is drawn by
 /// slices (Neal 2003); on rims a step along the tangent, put back on the manifold, accepted by Metropolis' rule with
-/// its way back (Zappa, Holmes-Cerfon and Goodman 2018); on rims of discs only, not of balls.
+/// its way back (Zappa, Holmes-Cerfon and Goodman 2018); on rims of discs only, not of balls or polytopes.
 class ClosedPlay {
  public:
   /// Columns of `across` and of `along` are orthonormal, one row for each number of the rooms: y closes where

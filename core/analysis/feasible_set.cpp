@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "analysis/rounded_support.h"
 #include "linear/singular_values.h"
 
 namespace freeplay {
@@ -36,7 +37,9 @@ std::optional<VectorXd> box_of(Index rows, const std::vector<Generator>& generat
       if (own >= 0) return std::nullopt;
       own = r;
     }
-    if (own >= 0) widths[own] += generator.size * generator.columns.row(own).norm();
+    if (own < 0) continue;
+    const VectorXd row = generator.columns.row(own).transpose();
+    widths[own] += generator.size * (generator.hull == nullptr ? row.norm() : generator.hull->support(row));
   }
   return widths;
 }
@@ -59,7 +62,7 @@ constexpr int lengths = N == 3 ? 2 : 3;
 template <int N>
 using Shift = Eigen::Matrix<double, lengths<N>, 1>;
 
-/// h(n) = sum size |columns^T image^T n| and the dX where it is attained.
+/// h(n) = sum size |columns^T image^T n|, of polytopes the most of their corners, and the dX where it is attained.
 template <int N>
 class LinearImage {
   using Columns = Eigen::Matrix<double, N, lengths<N>>;
@@ -67,6 +70,10 @@ class LinearImage {
  public:
   LinearImage(const MatrixXd& image, const std::vector<Generator>& generators) {
     for (const Generator& generator : generators) {
+      if (generator.hull != nullptr) {
+        corners_.push_back(generator.size * (image * generator.columns * generator.hull->vertices));
+        continue;
+      }
       Columns columns = Columns::Zero();
       columns.leftCols(generator.columns.cols()) = generator.size * (image * generator.columns);
       columns_.push_back(columns);
@@ -81,11 +88,18 @@ class LinearImage {
       value += size;
       if (size > 0.0) at += columns * (w / size);
     }
+    for (const auto& corners : corners_) {
+      Index farthest = 0;
+      const VectorXd w = corners.transpose() * n;
+      value += w.cwiseAbs().maxCoeff(&farthest);
+      at += std::copysign(1.0, w[farthest]) * corners.col(farthest);
+    }
     return value;
   }
 
  private:
   std::vector<Columns> columns_;
+  std::vector<Eigen::Matrix<double, N, Eigen::Dynamic>> corners_;  // of polytopes
 };
 
 /// The direction n in the shifts (`first` 0) or in the turns.
@@ -167,14 +181,17 @@ WorstCase worst_vertex(const MatrixXd& a, const VectorXd& widths) {
   return out;
 }
 
-/// min over t of sum size |columns^T (mu_0 + N t)|, N spanning the null space of A^T.
+/// min over t of the sum of all supports at mu_0 + N t, N spanning the null space of A^T.
 class Dual {
  public:
   Dual(const MatrixXd& a, const std::vector<Generator>& generators) : generators_(generators) {
     const SingularValues svd = singular_values(a, SingularVectors::full, SingularVectors::full);
     image_ = svd.v * svd.sigma.cwiseInverse().asDiagonal() * svd.u.leftCols(a.cols()).transpose();
     null_ = svd.u.rightCols(a.rows() - a.cols());
-    for (const Generator& generator : generators) reduced_.push_back(null_.transpose() * generator.columns);
+    for (const Generator& generator : generators) {
+      supports_.emplace_back(generator);
+      reduced_.push_back(null_.transpose() * supports_.back().columns());
+    }
   }
 
   template <int N>
@@ -182,9 +199,7 @@ class Dual {
     const VectorXd start = image_.transpose() * n;
     VectorXd t = VectorXd::Zero(null_.cols());
     double scale = 0.0;
-    for (const Generator& generator : generators_) {
-      scale = std::max(scale, (generator.columns.transpose() * start).norm());
-    }
+    for (const RoundedSupport& support : supports_) scale = std::max(scale, support.scale(start));
     // The kinks are rounded, less and less.
     for (double round = 0.1; round >= smallest_round; round *= 0.1) {
       for (int i = 0; i < 30 && improve(start, round * scale, t); ++i) {
@@ -193,11 +208,9 @@ class Dual {
     multipliers_ = start + null_ * t;
     double value = 0.0;
     VectorXd right = VectorXd::Zero(start.size());
-    for (const Generator& generator : generators_) {
-      const VectorXd w = generator.columns.transpose() * multipliers_;
-      value += generator.size * w.norm();
-      const double rounded = std::hypot(w.norm(), smallest_round * scale);
-      if (rounded > 0.0) right += generator.size * (generator.columns * w) / rounded;
+    for (std::size_t k = 0; k < generators_.size(); ++k) {
+      value += generators_[k].size * supports_[k].value(multipliers_, 0.0);
+      supports_[k].add_point(multipliers_, smallest_round * scale, generators_[k].size, right);
     }
     at = image_ * right;
     return value;
@@ -208,9 +221,7 @@ class Dual {
   double rounded(const VectorXd& start, double round, const VectorXd& t) const {
     double value = 0.0;
     const VectorXd mu = start + null_ * t;
-    for (const Generator& generator : generators_) {
-      value += generator.size * std::hypot((generator.columns.transpose() * mu).norm(), round);
-    }
+    for (std::size_t k = 0; k < generators_.size(); ++k) value += generators_[k].size * supports_[k].value(mu, round);
     return value;
   }
 
@@ -221,14 +232,10 @@ class Dual {
     MatrixXd hessian = MatrixXd::Zero(t.size(), t.size());
     double now = 0.0;
     for (std::size_t k = 0; k < generators_.size(); ++k) {
-      const VectorXd w = generators_[k].columns.transpose() * mu;
-      const double s = std::hypot(w.norm(), round);
-      if (!(s > 0.0)) continue;
-      now += generators_[k].size * s;
-      const VectorXd direction = reduced_[k] * w;
-      gradient += generators_[k].size / s * direction;
-      hessian += generators_[k].size / s *
-                 (reduced_[k] * reduced_[k].transpose() - direction * direction.transpose() / (s * s));
+      const double value = supports_[k].value(mu, round);
+      if (!(value > 0.0)) continue;
+      now += generators_[k].size * value;
+      supports_[k].add(mu, round, generators_[k].size, reduced_[k], gradient, hessian);
     }
     hessian.diagonal().array() += 1e-14 * hessian.trace() + 1e-300;
     const VectorXd step = -hessian.ldlt().solve(gradient);
@@ -245,6 +252,7 @@ class Dual {
 
   const std::vector<Generator>& generators_;
   MatrixXd image_, null_;
+  std::vector<RoundedSupport> supports_;  // by generator
   std::vector<MatrixXd> reduced_;
   mutable VectorXd multipliers_;
 };

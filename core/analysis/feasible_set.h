@@ -7,14 +7,22 @@
 
 #include <Eigen/Core>
 
+#include "analysis/play_hull.h"
 #include "analysis/pose_form.h"
 
 namespace freeplay {
 
-/// One play (a segment, a disc or a ball: 1 to 3 columns) or one input (a segment) and how far it goes.
+/// One play (a segment, a disc or a ball: 1 to 3 columns, or a polytope) or one input (a segment) and how far it goes.
 struct Generator {
-  Eigen::MatrixXd columns;  ///< rows x 1, 2 or 3
-  double size = 0.0;        ///< radius [m], or half length [rad or m]
+  Eigen::MatrixXd columns;         ///< rows x numbers
+  double size = 0.0;               ///< radius [m], or half length [rad or m]
+  const PlayHull* hull = nullptr;  ///< of a polytope, whose numbers are `size` times those of the hull
+
+  /// Its support function for size 1: largest mu.(columns delta).
+  double support(const Eigen::VectorXd& mu) const {
+    const Eigen::VectorXd w = columns.transpose() * mu;
+    return hull == nullptr ? w.norm() : hull->support(w);
+  }
 };
 
 /// Largest values over a set of platform displacements dX (PoseForm).
@@ -26,9 +34,9 @@ struct WorstCase {
   Eigen::VectorXd multipliers;                   ///< mu with A^T mu = (worst direction, 0), optimal there
 };
 
-/// All dX with A dX = sum of columns_k delta_k, |delta_k| <= size_k, for A with 3 columns (plane) or 6 (space) and
-/// their rank. Its support function is, by convex duality,
-///   h(n) = max n.dX = min { sum size_k |columns_k^T mu| : A^T mu = n }
+/// All dX with A dX = sum of columns_k delta_k, |delta_k| <= size_k or in the hull times it, for A with 3 columns
+/// (plane) or 6 (space) and their rank. Its support function is, by convex duality,
+///   h(n) = max n.dX = min { sum size_k |columns_k^T mu| : A^T mu = n }        of a hull its own support for the norm
 /// The bound is exact: with as many rows as columns mu is unique; where in the plane every generator acts on one row
 /// only the set is the polytope |A_i dX| <= D_i and its vertices are tried; else h is minimised by Newton's method (to
 /// 1e-11 of it, from above). Its largest value is found by branch and bound over directions.

@@ -112,10 +112,17 @@ void IdealMechanism::find_plays() {
 
 void IdealMechanism::add_play(int joint, double radius) {
   const auto add = [&](double size, std::initializer_list<std::array<double, 6>> twists, const char* part) {
-    Play play{joint, size, static_cast<int>(twists.size()), part[0] != 0, {}, part, play_numbers()};
-    std::ranges::copy(twists, play.twist.begin());
+    const Play play{joint, size, static_cast<int>(twists.size()), part[0] != 0, twists, part, play_numbers()};
     if (size > 0.0) plays_.push_back(play);
   };
+  const JointLayout& layout = model_->joints[at(joint)].layout;
+  if (model_->joints[at(joint)].has_play && !layout.play_bounds.empty() && layout.clearance > 0.0) {
+    BoundedPlay bounded = bounded_play(layout.play_bounds, layout.clearance);
+    const int size = static_cast<int>(bounded.twist.size());
+    plays_.push_back({joint, radius, size, true, std::move(bounded.twist), "", play_numbers(),
+                      std::make_shared<const PlayHull>(std::move(bounded.hull))});
+    return;
+  }
   const double length = parameter(model_->joints[at(joint)], "clearance.length");
   const bool slide = plays_between_walls(model_->joints[at(joint)].layout);
   if (model_->space == Space::planar && slide && length > 0.0) {

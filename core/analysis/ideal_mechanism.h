@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "analysis/platform.h"
+#include "analysis/play_hull.h"
 #include "model/leg.h"
 #include "system/system.h"
 
@@ -30,15 +31,17 @@ struct Limb {
 /// What the play of a joint lets its second marker do: displacements sum of twist_k delta_k with |delta| <= radius. In
 /// the plane a disc: a massless link of length `radius` between the two markers. In space a ball; or, of a bearing that
 /// has a length, two discs and a segment: the eccentricities of the axis at both ends of the bearing (their mean is a
-/// shift, their difference over the length a tilt) and the shift along the axis.
+/// shift, their difference over the length a tilt) and the shift along the axis. Of a joint that declares bounds of its
+/// play a polytope.
 struct Play {
   int joint = 0;          ///< index into Model::joints
   double radius = 0.0;    ///< [m]
-  int size = 2;           ///< numbers of delta: 1, 2 or 3
+  int size = 2;           ///< numbers of delta: 1, 2 or 3, of a polytope up to 6
   bool own_axes = false;  ///< twists are along the axes of the first marker, else along those of the world
-  std::array<std::array<double, 6>, 3> twist{};  ///< by number: shift [m/m], rotation vector [rad/m]
-  const char* part = "";  ///< of several of one joint: ".upper", ".lower" (ends), ".axial", ".front"
-  int place = 0;          ///< of its first number among those of all plays
+  std::vector<std::array<double, 6>> twist{};  ///< by number: shift [m/m], rotation vector [rad/m]
+  const char* part = "";                   ///< of several of one joint: ".upper", ".lower" (ends), ".axial", ".front"
+  int place = 0;                           ///< of its first number among those of all plays
+  std::shared_ptr<const PlayHull> hull{};  ///< of a polytope: all delta/radius
 };
 
 class IdealMechanism {

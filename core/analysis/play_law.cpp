@@ -85,4 +85,20 @@ void draw(const PlayLaw& law, RandomDraws& random, std::span<double> out) {
   out[1] = radius * std::sin(angle);
 }
 
+void draw(const PlayLaw& law, RandomDraws& random, const PlayHull& hull, std::span<double> out) {
+  const bool normal = law.kind == PlayLaw::Kind::normal, wide = normal && law.sigma >= 0.8;
+  const Eigen::Map<Eigen::VectorXd> y(out.data(), static_cast<Eigen::Index>(out.size()));
+  while (true) {
+    for (double& number : out) number = normal && !wide ? law.sigma * random.normal() : 2.0 * random.uniform() - 1.0;
+    const double gauge = hull.gauge(y);
+    if (law.kind == PlayLaw::Kind::rim && gauge > 0.0) {
+      for (double& number : out) number /= gauge;
+      return;
+    }
+    if (gauge > 1.0) continue;
+    if (wide && random.uniform() > std::exp(-0.5 * y.squaredNorm() / (law.sigma * law.sigma))) continue;
+    return;
+  }
+}
+
 }  // namespace freeplay

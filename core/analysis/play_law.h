@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "analysis/play_hull.h"
 #include "analysis/random_draws.h"
 
 namespace freeplay {
@@ -25,5 +26,9 @@ double variance(const PlayLaw& law, int size);
 
 /// Draws one play (1, 2 or 3 numbers) or input (1 number) by itself.
 void draw(const PlayLaw& law, RandomDraws& random, std::span<double> out);
+
+/// Draws one play between flat bounds, in shares of its hull: uniform in it; for `rim` in any direction as far as it
+/// goes; for `normal` every number, given that they lie in it.
+void draw(const PlayLaw& law, RandomDraws& random, const PlayHull& hull, std::span<double> out);
 
 }  // namespace freeplay

@@ -22,7 +22,7 @@ class Sampler {
     Index width = 0;
     for (const Generator& generator : generators) {
       if (generator.size <= 0.0) continue;
-      rooms_.push_back({width, generator.columns.cols()});
+      rooms_.push_back({width, generator.columns.cols(), generator.hull});
       width += generator.columns.cols();
     }
     MatrixXd all(a.rows(), width);
@@ -42,10 +42,12 @@ class Sampler {
     Index rank = 0;
     while (rank < free.sigma.size() && free.sigma[rank] > limit) ++rank;
     if (rank == 0) return;
-    const bool balls = std::ranges::any_of(rooms_, [](const PlayRoom& one) { return one.size == 3; });
+    const bool balls =
+        std::ranges::any_of(rooms_, [](const PlayRoom& one) { return one.size == 3 || one.hull != nullptr; });
     if (law_.kind == PlayLaw::Kind::rim && balls) {
       throw Error(Error::Category::usage, "bad-value",
-                  "play of balls that touch their sockets can be drawn only in mechanisms without redundancy");
+                  "play of balls that touch their sockets, and of sliders that touch the walls of their guides in "
+                  "space, can be drawn only in mechanisms without redundancy");
     }
     const MatrixXd& v = free.v;
     closed_.emplace(v.leftCols(rank), v.rightCols(width - rank), rooms_, law_, random_);
@@ -58,7 +60,12 @@ class Sampler {
   VectorXd draw() {
     if (closed_) return image_ * closed_->next();
     for (const PlayRoom& room : rooms_) {
-      freeplay::draw(law_, random_, {&plays_[room.place], static_cast<std::size_t>(room.size)});
+      const std::span<double> own(&plays_[room.place], static_cast<std::size_t>(room.size));
+      if (room.hull != nullptr) {
+        freeplay::draw(law_, random_, *room.hull, own);
+      } else {
+        freeplay::draw(law_, random_, own);
+      }
     }
     return image_ * plays_;
   }
@@ -104,6 +111,7 @@ std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism
   if (!inverse) return std::nullopt;
   MatrixXd covariance = MatrixXd::Zero(inverse->rows(), inverse->rows());
   for (const Generator& generator : generators_of(mechanism, map)) {
+    if (generator.hull != nullptr) return std::nullopt;
     const MatrixXd image = generator.size * (*inverse * generator.columns);
     covariance += image * image.transpose() * variance(law, static_cast<int>(image.cols()));
   }

@@ -23,7 +23,8 @@ std::optional<PlayStatistics> sample_play(const IdealMechanism& mechanism, const
                                           std::uint64_t seed, const PlayLaw& law = {}, const Tick& tick = {});
 
 /// Root mean squares of the same plays where every leg errs by itself and A dX = d is solved by least squares, in
-/// closed form from the variances of the law. Largest values are left 0. Empty where A has not the rank of its columns.
+/// closed form from the variances of the law. Largest values are left 0. Empty where A has not the rank of its columns,
+/// and where a play is a polytope, whose variance is not known.
 std::optional<PlayStatistics> least_squares_play(const IdealMechanism& mechanism, const VelocityMap& map,
                                                  const PlayLaw& law = {});
 

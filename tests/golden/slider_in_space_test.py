@@ -1,5 +1,6 @@
 """Sliders with play in space: eight corners before four walls; in the plane they are the slider of the plane."""
 import csv
+import json
 import math
 import unittest
 
@@ -97,12 +98,40 @@ class BlockInSpace(ModelTest):
         self.assert_column(columns, "joint.G.position", lambda t: 2 * t * t, 1e-10)
         self.assertEqual(0.0, max(columns["joint.G.contact"]))
 
-    def test_errors_of_a_platform_are_refused(self):
-        text = block().replace("simulation:", "drivers: {push: {joint: G, kind: position, value: 0}}\nsimulation:")
+    def test_errors_of_a_platform_are_those_of_its_corners(self):
+        """|y| + l |rz| + h |rx| <= g and |z| + l |ry| + b |rx| <= g_z, with half sizes: what is linear is largest at a corner of that, with
+        t = |rx| at 0 or where the first of both is used up."""
+        keys, tip = KEYS + ", gap_height: 0.5 mm", (0.3, 0.05, -0.04)
+        text = block(keys=keys).replace("simulation:", "drivers: {push: {joint: G, kind: position, value: 0}}\nsimulation:").replace(
+            "block: {", "block: {frames: {tip: [%r, %r, %r]}, " % tip)
         self.model(text)
-        _, err = self.freeplay("analyze", "error", "m.yaml", "--frame", "block", "--input", "G=0", code=3)
-        self.assertIn("[type-space]", err)
-        self.freeplay("analyze", "error", "m.yaml", "--frame", "block", "--input", "G=0", "--ideal", "G")
+        out, _ = self.freeplay("analyze", "error", "m.yaml", "--frame", "block/tip", "--input", "G=0", "--samples", "400")
+        row = {name: float(value) for name, value in next(csv.DictReader(out.splitlines())).items()}
+        half_length, half_width, half_height, gap, gap_height = 0.05, 0.02, 0.015, 2e-4, 5e-4
+
+        corners, farthest = [], 0.0
+        for turn in (0.0, min(gap / half_height, gap_height / half_width)):
+            first, second = gap - half_height * turn, gap_height - half_width * turn
+            for y, rz in ((first, 0.0), (-first, 0.0), (0.0, first / half_length), (0.0, -first / half_length)):
+                for z, ry in ((second, 0.0), (-second, 0.0), (0.0, second / half_length), (0.0, -second / half_length)):
+                    for rx in (turn, -turn):
+                        corners.append((ry * tip[2] - rz * tip[1], y + rz * tip[0] - rx * tip[2], z + rx * tip[1] - ry * tip[0], rx, ry, rz))
+        for i, name in enumerate(("dx", "dy", "dz", "drx", "dry", "drz")):
+            self.assertAlmostEqual(1.0, row[name] / max(abs(corner[i]) for corner in corners), delta=1e-9, msg=name)
+        farthest = max(math.hypot(*corner[:3]) for corner in corners)
+        self.assertAlmostEqual(1.0, row["position"] / farthest, delta=1e-7)
+        self.assertAlmostEqual(1.0, row["ls_position"] / farthest, delta=1e-7)
+        self.assertAlmostEqual(1.0, row["dangle"] / max(math.hypot(*corner[3:]) for corner in corners), delta=1e-7)
+        self.assertLess(row["sample_max_position"], farthest)
+        self.assertGreater(row["sample_max_position"], 0.4 * farthest)
+
+    def test_errors_grow_with_either_gap(self):
+        """Which joint has how much of the error, by the play of each."""
+        text = block(keys=KEYS + ", gap_height: 0.5 mm").replace("simulation:", "drivers: {push: {joint: G, kind: position, value: 0}}\nsimulation:")
+        self.model(text)
+        out, _ = self.freeplay("analyze", "error", "m.yaml", "--frame", "block", "--input", "G=0", "--json")
+        worst = json.loads(out)["summary"]["worst"]
+        self.assertAlmostEqual(math.hypot(2e-4, 5e-4), worst["share"]["joint.G"], delta=1e-10)
 
     def test_mistakes_have_place_and_remedy(self):
         for keys, expected in (

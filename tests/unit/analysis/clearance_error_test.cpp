@@ -259,6 +259,58 @@ TEST(FeasibleSet, DualAgreesWithVerticesLong) {
   }
 }
 
+// |y + l t| <= g and |y - l t| <= g leave the rhombus that two independent ends make.
+TEST(PlayHull, OfTwoEndsOfASliderIsTheSumOfTheirPlays) {
+  constexpr double gap = 2e-4, half = 0.05;
+  const double bounds[] = {gap, 0.0, 1.0, 0.0, 0.0, 0.0, half, gap, 0.0, 1.0, 0.0, 0.0, 0.0, -half};
+  const BoundedPlay play = bounded_play(bounds, gap);
+  ASSERT_EQ(play.twist.size(), 2u);
+  ASSERT_EQ(play.hull.vertices.cols(), 2);
+  for (Eigen::Index v = 0; v < 2; ++v) {
+    double shift = 0.0, turn = 0.0;
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      shift += gap * play.twist[static_cast<std::size_t>(k)][1] * play.hull.vertices(k, v);
+      turn += gap * play.twist[static_cast<std::size_t>(k)][5] * play.hull.vertices(k, v);
+    }
+    EXPECT_NEAR(std::abs(shift) / gap + half * std::abs(turn) / gap, 1.0, 1e-12);
+    EXPECT_NEAR(std::abs(shift) * std::abs(turn), 0.0, 1e-18);
+  }
+  EXPECT_NEAR(play.hull.gauge(play.hull.vertices.col(0)), 1.0, 1e-12);
+}
+
+// A sum of segments p_k has the corners sum +-p_k: both are the same set, whichever way it is told, also where
+// redundant rows are minimised over.
+TEST(PlayHull, CornersAreWorthTheSegmentsThatTheyAreTheSumOf) {
+  std::mt19937_64 engine(3);
+  const auto uniform = [&] { return 2.0 * static_cast<double>(engine() >> 11) * 0x1.0p-53 - 1.0; };
+  PlayHull square{MatrixXd::Identity(2, 2), MatrixXd(2, 2)};
+  square.vertices << 1.0, 1.0, 1.0, -1.0;
+  for (const Eigen::Index rows : std::initializer_list<Eigen::Index>{3, 5, 6}) {
+    for (int trial = 0; trial < 8; ++trial) {
+      MatrixXd a(rows, 3);
+      std::vector<Generator> segments, corners;
+      for (Eigen::Index r = 0; r < rows; ++r) {
+        const double angle = M_PI * uniform();
+        a.row(r) << std::cos(angle), std::sin(angle), 0.1 * uniform();
+      }
+      for (int k = 0; k < 3; ++k) {
+        MatrixXd columns(rows, 2);
+        for (Eigen::Index r = 0; r < rows; ++r) columns.row(r) << uniform(), uniform();
+        const double size = 1e-4 * (1.5 + uniform());
+        corners.push_back({columns, size, &square});
+        for (Eigen::Index c = 0; c < 2; ++c) segments.push_back({columns.col(c), size});
+      }
+      const Generator disc{MatrixXd::Random(rows, 2), 1e-4};
+      corners.push_back(disc);
+      segments.push_back(disc);
+      const WorstCase one = exact_worst_case(a, corners), other = exact_worst_case(a, segments);
+      EXPECT_NEAR(one.position, other.position, 1e-8 * other.position) << rows;
+      EXPECT_NEAR(one.dangle, other.dangle, 1e-8 * other.dangle) << rows;
+      EXPECT_NEAR(one.change[0], other.change[0], 1e-8 * other.change[0]) << rows;
+    }
+  }
+}
+
 TEST(FeasibleSet, FarthestPointsOfKnownSets) {
   // A disc of radius r and a segment of half length s along a: r + s, along a.
   const Vector2d a = Vector2d(3.0, 4.0) / 5.0;
