@@ -162,7 +162,8 @@ void check_offset(const JointProbe& probe, Findings& findings) {
     const InitialOffset offset = probe.initial_offset(reaction);
     const double size = std::hypot(offset.position[0], offset.position[1], offset.position[2]);
     const double speed = std::hypot(offset.velocity[0], offset.velocity[1], offset.velocity[2]);
-    const bool turns = std::isfinite(offset.turn) && std::isfinite(offset.turn_rate);
+    bool turns = std::isfinite(offset.turn) && std::isfinite(offset.turn_rate);
+    for (int i = 0; i < 3; ++i) turns = turns && std::isfinite(offset.tilt[i]) && std::isfinite(offset.tilt_rate[i]);
     findings.expect("initial-offset", std::isfinite(size) && std::isfinite(speed) && turns, [&] {
       return fmt::format("for a load of {} N the start is {} m and {} rad away and moves with {} m/s and {} rad/s",
                          load, size, offset.turn, speed, offset.turn_rate);
@@ -179,11 +180,11 @@ bool same_layout(const JointLayout& a, const JointLayout& b) {
   const auto numbers = [](const JointLayout& l) {
     return std::tuple(l.coordinate, l.constraint_rows, l.internal_variables, l.history, l.forces != 0,
                       l.analytic_derivatives != 0, l.pin != 0, l.planar_coordinate != 0, l.clearance, l.time_scale,
-                      l.play_shape, l.contact_reach);
+                      l.play_shape, l.contact_reach, l.free_turns != 0);
   };
-  return numbers(a) == numbers(b) && std::ranges::equal(a.planar_rows, b.planar_rows) &&
-         same_names(a.channels, b.channels) && std::ranges::equal(a.channel_roles, b.channel_roles) &&
-         std::ranges::equal(a.event_roles, b.event_roles) &&
+  return numbers(a) == numbers(b) && std::ranges::equal(a.play_bounds, b.play_bounds) &&
+         std::ranges::equal(a.planar_rows, b.planar_rows) && same_names(a.channels, b.channels) &&
+         std::ranges::equal(a.channel_roles, b.channel_roles) && std::ranges::equal(a.event_roles, b.event_roles) &&
          std::ranges::equal(a.events, b.events, [](const Event& x, const Event& y) {
            return std::string_view(x.name) == y.name && x.crossing == y.crossing && x.locate == y.locate &&
                   same_names(x.fields, y.fields);
@@ -215,6 +216,7 @@ Findings check_joint(const JointSubject& subject, const Conditions& conditions) 
   check_cycle(probe, subject, random, findings);
   check_memory(probe, twin, moments, random, findings);
   check_rest(probe, moments, random, findings);
+  check_bounds(probe, random, findings);
   check_time(probe, moments, random, findings);
   check_roles(probe, moments, findings);
   check_contacts(probe, poses, random, findings);

@@ -32,6 +32,7 @@ struct JointSubject {
 ///   initial-offset                    of a joint with play is a finite place within reach
 ///   no-hidden-state, same-twin        answers depend on the input alone, bit for bit, and not on the object
 ///   free-distance                     within it nothing acts, happens or is remembered
+///   play-bounds                       within the bounds nothing acts, beyond them it does
 ///   time-scale, next-corner           what it says of its own dependence on time
 ///   rollback                          history and internal variables are all there is to put back
 ///   contact-acts, located, prediction, force-jump, no-tension, starts-in-contact, event-fields, contacts-apart,
@@ -47,6 +48,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
 void check_cycle(const JointProbe& probe, const JointSubject& subject, RandomNumbers& random, Findings& findings);
 void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
                   RandomNumbers& random, Findings& findings);
+void check_bounds(const JointProbe& probe, RandomNumbers& random, Findings& findings);
 void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
 void check_time(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,

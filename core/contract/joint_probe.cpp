@@ -207,6 +207,21 @@ double JointProbe::free_distance(const JointMoment& moment) const {
   return std::isfinite(distance) ? distance : 0.0;
 }
 
+std::array<double, 3> JointProbe::free_levers(const JointMoment& moment) const {
+  Fed fed(*this, moment);
+  GuardedNumbers levers(std::vector<double>(3, 0.0));
+  std::array<double, 3> out{};
+  if (!run("free_levers", &moment, [&](Message& m) { return joint_.free_levers(fed.in, levers.span(), m); }))
+    return out;
+  watch("free_levers", fed, {&levers});
+  const std::vector<double> values = levers.values();
+  std::ranges::copy(values, out.begin());
+  findings_.expect("free-distance", std::ranges::all_of(values, [](double x) { return x >= 0.0; }), [&] {
+    return fmt::format("free_levers() gives {} m, {} m and {} m", values[0], values[1], values[2]);
+  });
+  return out;
+}
+
 double JointProbe::next_corner(double t) const {
   double corner = unbounded;
   run("next_corner", nullptr, [&](Message& m) { return joint_.next_corner(t, corner, m); });

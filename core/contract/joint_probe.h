@@ -1,6 +1,7 @@
 // JointProbe: calls a joint as the host does and watches what it writes.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <span>
 #include <string>
@@ -60,6 +61,7 @@ class JointProbe {
   std::vector<double> contacts(const JointMoment& moment, std::size_t count) const;
   double step_limit(const JointMoment& moment) const;
   double free_distance(const JointMoment& moment) const;
+  std::array<double, 3> free_levers(const JointMoment& moment) const;
   double next_corner(double t) const;
   /// False when there is nothing to warn of.
   bool warns(const JointMoment& moment) const;

@@ -1,5 +1,6 @@
-// The rule of free_distance(): what a joint promises to leave alone.
+// The rules of free_distance() and of the bounds of play: where a joint leaves its bodies alone.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include "component/joint_roles.h"
 #include "contract/joint_contract.h"
 #include "contract/joint_words.h"
+#include "freeplay/eigen.h"
 
 namespace freeplay {
 namespace {
@@ -24,6 +26,33 @@ MarkerPair strayed_between_walls(const MarkerPair& from, double way, double reac
                   {c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0}};
   const MarkerPair elsewhere = moved(from, random_twelve(Space::planar, random, 0.3));
   return with_twists(placed_pair(elsewhere, pose), random_twelve(Space::planar, random, 2.0));
+}
+
+/// With turns that count: a elsewhere, and b moved by `way` at most as seen from it, shared between a shift and a turn;
+/// turned as it likes about an axis of its own beside which no lever stands.
+MarkerPair strayed_with_turns(const MarkerPair& from, double way, const std::array<double, 3>& levers,
+                              RandomNumbers& random) {
+  using Eigen::Matrix3d;
+  using Eigen::Vector3d;
+  const auto direction = [&] {
+    const Vector3d any(random.between(-1.0, 1.0), random.between(-1.0, 1.0), random.between(-1.0, 1.0));
+    return Vector3d(any.normalized());
+  };
+  const double share = random.between(0.0, 1.0), sum = levers[0] + levers[1] + levers[2];
+  const Matrix3d to_a = rotation(from.a).transpose();
+  const Vector3d shift = to_a * (vector3(from.b.position) - vector3(from.a.position)) + share * way * direction();
+  // The tip of a unit axis moves by no more than the angle.
+  const double angle = sum > 0.0 ? (1.0 - share) * way / sum : random.between(0.0, 3.0);
+  Matrix3d turned = Eigen::AngleAxisd(angle, direction()) * to_a * rotation(from.b);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (sum > levers[k] || !(sum > 0.0)) continue;
+    turned = turned * Eigen::AngleAxisd(random.between(-3.0, 3.0), Vector3d::Unit(static_cast<Eigen::Index>(k)));
+  }
+  Pose pose;
+  Eigen::Map<Vector3d>(pose.position) = shift;
+  Eigen::Map<RowMajor3>(pose.rotation) = turned;
+  const MarkerPair elsewhere = moved(from, random_twelve(Space::spatial, random, 0.3));
+  return with_twists(placed_pair(elsewhere, pose), random_twelve(Space::spatial, random, 2.0));
 }
 
 /// The markers elsewhere, turned and moving otherwise, with their origins moved against each other by `way` at most.
@@ -46,14 +75,17 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
   constexpr int tries = 4;
   constexpr double inside = 1.0 - 1e-6;  // rounding of where the markers are put
   const JointLayout& layout = probe.layout();
+  const bool turns = probe.space() == Space::spatial && layout.free_turns != 0;
   const bool walls = probe.space() == Space::planar && layout.clearance > 0.0 && plays_between_walls(layout);
   for (const JointMoment& moment : moments) {
     const double distance = probe.free_distance(moment);
     if (!(distance > 0.0)) continue;
+    const std::array<double, 3> levers = turns ? probe.free_levers(moment) : std::array<double, 3>{};
     for (int i = 0; i < tries; ++i) {
       JointMoment there = moment;
-      there.markers = walls ? strayed_between_walls(moment.markers, inside * distance, layout.contact_reach, random)
-                            : strayed(moment.markers, probe.space(), inside * distance, random);
+      there.markers = walls   ? strayed_between_walls(moment.markers, inside * distance, layout.contact_reach, random)
+                      : turns ? strayed_with_turns(moment.markers, inside * distance, levers, random)
+                              : strayed(moment.markers, probe.space(), inside * distance, random);
       const auto expect = [&](bool held, const char* what) {
         findings.expect("free-distance", held, [&] {
           return fmt::format("within the {:.6g} m that free_distance() gives {}, {}", distance, what, words_of(there));
@@ -73,6 +105,45 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
       probe.commit(later);
       expect(same_bits(probe.all(there), probe.all(later)), "begin_step() and commit() change what it answers");
     }
+  }
+}
+
+/// Within half of its bounds a joint leaves b alone, from twice of one on it does not: both leave room for what is of
+/// second order.
+void check_bounds(const JointProbe& probe, RandomNumbers& random, Findings& findings) {
+  constexpr int tries = 12;
+  constexpr std::size_t each = 7;
+  constexpr double most_turn = 0.2;  // beyond is second order
+  const Span<const double> bounds = probe.layout().play_bounds;
+  if (bounds.empty() || probe.layout().forces == 0) return;
+  Pose middle{{}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
+  if (!probe.place(0.0, middle)) middle = {{}, {1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
+  for (int i = 0; i < tries; ++i) {
+    // A displacement that bounds hold: a sum of their rows, as large as they leave.
+    Eigen::Matrix<double, 6, 1> by = Eigen::Matrix<double, 6, 1>::Zero();
+    for (std::size_t b = 0; b < bounds.size; b += each)
+      by += random.between(-1.0, 1.0) * Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&bounds[b + 1]);
+    double gauge = 0.0;
+    for (std::size_t b = 0; b < bounds.size; b += each)
+      gauge =
+          std::max(gauge, std::abs(by.dot(Eigen::Map<const Eigen::Matrix<double, 6, 1>>(&bounds[b + 1]))) / bounds[b]);
+    if (!(gauge > 0.0)) continue;
+    const bool out = i % 2 == 1;
+    by *= (out ? 2.0 : 0.5) / gauge;
+    const double angle = by.tail<3>().norm();
+    if (angle > most_turn) continue;
+    Pose pose = middle;
+    Eigen::Map<Eigen::Vector3d>(pose.position) += by.head<3>();
+    if (angle > 0.0)
+      Eigen::Map<RowMajor3>(pose.rotation) =
+          Eigen::AngleAxisd(angle, by.tail<3>() / angle) * Eigen::Map<const RowMajor3>(middle.rotation);
+    const MarkerPair markers = with_twists(placed_pair(random_pair(probe.space(), random), pose), {});
+    const JointMoment there = probe.start(markers, 0.0);
+    const bool acts = !all_zero(probe.forces(there).wrench);
+    findings.expect("play-bounds", acts == out, [&] {
+      return fmt::format("{} the bounds that it declares it {}, {}", out ? "at twice" : "at half of",
+                         acts ? "exerts something" : "exerts nothing", words_of(there));
+    });
   }
 }
 

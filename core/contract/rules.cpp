@@ -113,9 +113,13 @@ constexpr Rule rules[] = {
      "was given up. Look for numbers that are kept in members."},
     {"step-limit", joints, "step_limit() gives a time above zero."},
     {"free-distance", joints,
-     "Wherever the origins of the markers move within free_distance(), the joint exerts and stores nothing, no event "
-     "is "
-     "past its zero, there is nothing to warn of, and begin_step() and commit() change nothing that it answers later."},
+     "Wherever the markers move within free_distance(), turns counted by free_levers() where the joint declares "
+     "`free_turns`, the joint exerts and stores nothing, no event is past its zero, there is nothing to warn of, and "
+     "begin_step() and commit() change nothing that it answers later."},
+    {"play-bounds", joints,
+     "Where b stands off by half of what `play_bounds` declares the joint exerts nothing, by twice of it something. "
+     "Look "
+     "for a bound in other axes than those of a, and for a turn that counts with the wrong sign."},
     // Contacts of joints, where an event begins one.
     {"contact-acts", joints,
      "After its begin event a contact pushes as soon as it is deep, and stops a body that it can stop. Look for a "

@@ -59,6 +59,7 @@ enum class Flaw {
   writes_beside_history,
   step_limit_zero,
   free_too_far,
+  bounds_too_wide,
   timed_force,
   earlier_corner,
   wandering_corner,

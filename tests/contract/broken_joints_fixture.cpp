@@ -8,6 +8,9 @@ namespace {
 constexpr Channel fields[] = {{"count", "1"}};
 constexpr Event events_[] = {{"touch", Crossing::rising, 0, fields}};
 constexpr Channel channels_[] = {{"depth", "m"}};
+// The square about the play, and one three times as wide.
+constexpr double bounds_[] = {0.01, 1, 0, 0, 0, 0, 0, 0.01, 0, 1, 0, 0, 0, 0},
+                 wide_bounds_[] = {0.03, 1, 0, 0, 0, 0, 0, 0.03, 0, 1, 0, 0, 0, 0};
 }  // namespace
 
 void Cage::declare(JointLayout& layout) const {
@@ -16,6 +19,7 @@ void Cage::declare(JointLayout& layout) const {
   layout.forces = flaw_ == Flaw::undeclared_forces ? 0 : 1;
   layout.analytic_derivatives = 1;
   layout.clearance = clearance_;
+  layout.play_bounds = flaw_ == Flaw::bounds_too_wide ? wide_bounds_ : bounds_;
   layout.events = events_;
   layout.channels = channels_;
   layout.time_scale = unbounded;

@@ -169,6 +169,7 @@ TEST(JointContract, FindsWrongCalls) {
                       {Flaw::writes_beside_history, "stays-in-span"},
                       {Flaw::step_limit_zero, "step-limit"},
                       {Flaw::free_too_far, "free-distance"},
+                      {Flaw::bounds_too_wide, "play-bounds"},
                       {Flaw::timed_force, "time-scale"},
                       {Flaw::earlier_corner, "next-corner"},
                       {Flaw::wandering_corner, "next-corner"},
