@@ -77,6 +77,15 @@ class PageTest(InstalledTest):
         self.assertEqual({"right", "upper", "lower"}, {event["kind"].split("_")[0] for event in events})
         ends = [event for event in events if event["kind"].endswith("contact_end")]
         self.assertGreater(len(ends), 2)
+        error = self.rows("errors.csv")[0]
+        for name in ("position", "ls_position"):
+            self.assertAlmostEqual(5e-4, float(error[name]), delta=1e-12)
+        start = self.rows("results", "window", "results.csv")[0]
+        self.assertLess(float(start["joint.W.y"]), -3e-4)
+        self.assertGreater(float(start["joint.W.fn"]), 1.0)
+        ideal = self.rows("results", "ideal-window", "results.csv")
+        away = [math.hypot(float(row["body.arm.x"]), float(row["body.arm.y"])) for row in ideal]
+        self.assertLess(max(away) - min(away), 1e-12)
         summary = json.loads(self.read("work", "results", "hole", "summary.json"))
         hole = summary["joints"]["hole"]
         self.assertEqual(hole["contacts"], hole["play"]["impacts"] + sum(event["impact"] == "0" for event in ends) +
