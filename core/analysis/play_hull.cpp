@@ -14,9 +14,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index numbers_each = 7;             // of a bound
-constexpr double depends = 1e-10;             // singular value against the largest, and pivot of chosen bounds
-constexpr double within = 1e-9, same = 1e-7;  // of a bound, of a vertex
+constexpr Index numbers_each = 7;           // of a bound
+constexpr double dependent_bounds = 1e-10;  // singular value against the largest, and pivot of chosen bounds
+constexpr double bounds_rounding = 1e-9, same_corner = 1e-7;  // of a bound, of a vertex
 
 /// Directions that the bounds hold, as columns: coordinates of shift and turn where these are independent.
 MatrixXd held_directions(const MatrixXd& bounds) {
@@ -29,7 +29,7 @@ MatrixXd held_directions(const MatrixXd& bounds) {
   scaled = scaled * size.cwiseInverse().asDiagonal();
   const SingularValues svd = singular_values(scaled, SingularVectors::none, SingularVectors::full);
   Index rank = 0;
-  while (rank < svd.sigma.size() && svd.sigma[rank] > depends * svd.sigma[0]) ++rank;
+  while (rank < svd.sigma.size() && svd.sigma[rank] > dependent_bounds * svd.sigma[0]) ++rank;
   const auto width = static_cast<Index>(used.size());
   const MatrixXd own = rank == width ? MatrixXd(MatrixXd::Identity(width, width))
                                      : MatrixXd(size.cwiseInverse().asDiagonal() * svd.v.leftCols(rank));
@@ -60,7 +60,7 @@ class Vertices {
   void solve() {
     const MatrixXd rows = facets_(chosen_, Eigen::all);
     Eigen::FullPivLU<MatrixXd> lu(rows);
-    lu.setThreshold(depends);
+    lu.setThreshold(dependent_bounds);
     if (!lu.isInvertible()) return;
     const std::size_t count = chosen_.size();
     // The first sign is +: opposites are not kept.
@@ -70,8 +70,8 @@ class Vertices {
         if ((signs >> (k - 1) & 1U) != 0) ends[static_cast<Index>(k)] = -1.0;
       }
       const VectorXd y = lu.solve(ends);
-      if ((facets_ * y).cwiseAbs().maxCoeff() > 1.0 + within) continue;
-      const double near = same * y.norm();
+      if ((facets_ * y).cwiseAbs().maxCoeff() > 1.0 + bounds_rounding) continue;
+      const double near = same_corner * y.norm();
       const auto is_same = [&](const VectorXd& other) {
         return (y - other).norm() < near || (y + other).norm() < near;
       };

@@ -21,6 +21,8 @@ joints: {G: {type: prismatic, between: [ground, block]%s, clearance: {%s, contac
 """
 KEYS = "width: 40 mm, length: 100 mm, gap: 0.2 mm"
 CLEARANCE, LENGTH, WEIGHT = 1e-4, 0.04, 2 * 9.81
+# What a journal at rest may move by [m/s, rad/s]: squares of its tilt are left out. It would fall over with 1 rad/s by then.
+TILTED = 2e-5
 
 
 def shaft(kind="cylindrical", gravity="0, 0, -9.81", com="0, 0, 0", velocity="", axis="0, 1, 0", rest="", more="", end="5 ms", simulation=FINE):
@@ -46,8 +48,8 @@ class TiltedStart(ModelTest):
         with open(self.path("out", "events.csv"), encoding="utf-8") as file:
             return [event for event in csv.DictReader(file) if event["kind"].endswith("contact_begin")]
 
-    def assert_rests(self, columns, body, tolerance=1e-6):
-        for name in ("vx", "vy", "vz", "wx", "wy", "wz"):
+    def assert_rests(self, columns, body, tolerance=1e-6, names=("vx", "vy", "vz", "wx", "wy", "wz")):
+        for name in names:
             self.assertLess(max(map(abs, columns["body.%s.%s" % (body, name)])), tolerance, name)
 
     def test_a_journal_starts_with_its_tilt_and_goes_on_tilting(self):
@@ -56,7 +58,7 @@ class TiltedStart(ModelTest):
             text = shaft(kind, gravity="0, 0, 0", rest=", initial: {tilt: [2 mrad, 0.5, 0], tilt_speed: [1 rad/s, 0, 0]}")
             columns = self.run_model(text)
             self.assertAlmostEqual(math.sin(1e-3), columns["body.shaft.qx"][0], delta=1e-14)
-            self.assertAlmostEqual(0.0, columns["body.shaft.qy"][0], delta=1e-14)
+            self.assertAlmostEqual(0.0, columns["body.shaft.qy"][0], delta=1e-6)
             self.assertAlmostEqual(1.0, columns["body.shaft.wx"][0], delta=1e-12)
             begins = self.begins()
             self.assertEqual({"upper_contact_begin", "lower_contact_begin"}, {event["kind"] for event in begins[:2]})
@@ -85,18 +87,21 @@ class TiltedStart(ModelTest):
                 ends = [-math.copysign(CLEARANCE + depth(abs(force)), force) for force in (upper, lower)]
                 self.assert_column(columns, "joint.S.fn", lambda t: abs(upper) + abs(lower), 2e-3)
                 self.assert_column(columns, "joint.S.ez", lambda t: sum(ends) / 2, 1e-9)
-                self.assertAlmostEqual((ends[0] - ends[1]) / LENGTH, 2 * columns["body.shaft.qx"][0], delta=1e-7)
-                self.assert_rests(columns, "shaft")
+                slope = (ends[0] - ends[1]) / LENGTH
+                self.assertAlmostEqual(slope, 2 * columns["body.shaft.qx"][0], delta=1e-7)
+                self.assert_rests(columns, "shaft", TILTED, names=("vx", "vz", "wx", "wy", "wz"))
+                down = -9.81 * slope * columns["time"][-1] if kind == "cylindrical" else 0.0  # along its axis, which nothing holds
+                self.assertAlmostEqual(down, columns["body.shaft.vy"][-1], delta=1e-6)
 
     def test_a_shaft_far_along_its_sleeve_rests_too(self):
         text = shaft(com="0, 0.01, 0", velocity=", pose: {position: [0, -0.05, 0]}", rest=", initial: loaded", more="")
-        self.assert_rests(self.run_model(text), "shaft")
+        self.assert_rests(self.run_model(text), "shaft", TILTED, names=("vx", "vz", "wx", "wy", "wz"))
 
     def test_a_journal_with_a_load_along_its_axis_rests_on_a_shoulder_as_well(self):
-        for axis, com in (("0, 0.6, 0.8", "0, 0.009, 0.012"), ("0, -0.8, 0.6", "0, 0.016, -0.012"), ("0.6, 0, 0.8", "0.003, 0, 0.004")):
+        for axis, com in (("0, 0.6, 0.8", "0, 0.009, 0.012"), ("0, -0.8, 0.6", "0, 0.024, -0.018"), ("0.6, 0, 0.8", "0.003, 0, 0.004")):
             columns = self.run_model(shaft("revolute", com=com, axis=axis, rest=", initial: loaded"))
-            self.assertGreater(columns["joint.S.fn"][0], 10.0)
-            self.assert_rests(columns, "shaft")
+            self.assertGreater(columns["joint.S.fn"][0], 8.0)
+            self.assert_rests(columns, "shaft", TILTED)
 
     def test_a_universal_joint_bends_by_both_of_its_pins(self):
         text = shaft("universal", gravity="0, 0, 0", rest=", cross: {mass: 0.1, inertia: [1e-5, 1e-5, 2e-5]}, initial: {tilt: [0, 0, 1 mrad]}").replace(
@@ -143,7 +148,7 @@ class TiltedStart(ModelTest):
                 (shaft("revolute", rest=tilted % "6 mrad, 0, 0"), {"id": "assembly-failed", "line": 6}),
                 (shaft(rest=', initial: {eccentricity: [0, 0, "90 um"], tilt: [1 mrad, 0, 0]}'), {"id": "assembly-failed", "line": 6}),
                 (shaft("spherical", rest=tilted % "1 mrad, 0, 0").replace(", axis: [0, 1, 0]", "").replace(", length: 40 mm", ""), {"id": "unknown-key"}),
-                (shaft(rest=tilted % "1 mm, 0, 0"), {"id": "unit-mismatch"}),
+                (shaft(rest=tilted % "1 mm, 0, 0"), {"id": "dimension-mismatch"}),
                 (block(rest=tilted % "0, 0, 5 mrad"), {"id": "out-of-range", "line": 6}),
                 (block(rest=tilted % "0, 0, 190 deg"), {"id": "out-of-range", "line": 6}),
                 (block(rest=", initial: {angle: 1 mrad}"), {"id": "type-space"}),
