@@ -73,6 +73,14 @@ class PinInSlot(ModelTest):
         self.assertAlmostEqual(-0.2 * 9.81, (columns["body.pin.vx"][-1] - 1.0) / 2e-3, delta=1e-4)
         self.assertAlmostEqual(-moment / 0.01, columns["body.pin.omega"][-1] / 2e-3, delta=1e-2)
 
+    def test_a_start_past_the_end_of_the_slot_is_warned_of(self):
+        laws = "contact: {law: hertz, K: 1e9}"
+        head, tail = slot().split("clearance: {")[0], "}}}\ninitial: {joints: {%s: 30 mm}}\nsimulation: {end: 1 ms}\n"
+        name = re.search(r"joints: *\{(\w+):", head).group(1)
+        text = head + "clearance: {pin_radius: 5 mm, gap: 0.2 mm, slot: [-10 mm, 10 mm], " + laws + tail % name
+        messages = self.facts(text)["messages"]
+        self.assertEqual(["doubtful-clearance"], [message["id"] for message in messages if message["id"].startswith("doubtful-c")])
+
     def test_mistakes_have_place_and_remedy(self):
         laws = "contact: {law: hertz, K: 1e9}"
         head, tail = slot().split("clearance: {")[0], "}}}\nsimulation: {end: 1 ms}\n"
@@ -82,6 +90,7 @@ class PinInSlot(ModelTest):
                 ("pin_radius: 5 mm, slot_width: 10.4 mm, gap: 0.3 mm, " + laws, {"id": "conflicting-keys", "line": 5}),
                 ("slot_width: 10 mm, gap: 5 mm, " + laws, {"id": "out-of-range", "line": 5}),
                 ("gap: 0, " + laws, {"id": "out-of-range", "line": 5}),
+                ("pin_radius: 1 mm, gap: 2 mm, " + laws, {"id": "out-of-range", "line": 5}),
                 ("gap: 1 mm, slot: [2 mm, 1 mm], " + laws, {"id": "out-of-range", "line": 5}),
                 ("gap: 1 mm, slott: [1 mm, 2 mm], " + laws, {"id": "unknown-key", "suggestion": "slot"}),
                 ("gap: 1 mm, friction: {law: coulomb-tanh, mu: 0.1}, " + laws, {"id": "missing-key"}),
