@@ -16,10 +16,10 @@ struct Sleep {
 
   bool now = false;
   double radius = 0.0, from[12] = {};
-  bool left = false;                     ///< set by evaluations that found it elsewhere, and asked it
-  double levers[3] = {};                 ///< Joint::free_levers
-  Kind kind = Kind::round;               ///< fixed
-  double reach = 0.0;                    ///< JointLayout::contact_reach of walls, fixed
+  bool left = false;        ///< set by evaluations that found it elsewhere, and asked it
+  double levers[3] = {};    ///< Joint::free_levers
+  Kind kind = Kind::round;  ///< fixed
+  double reach = 0.0;       ///< JointLayout::contact_reach of walls, fixed
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -94,8 +94,8 @@ struct Sleep {
                         u[2] - (w_a[0] * d[1] - w_a[1] * d[0]));
     for (int k = 0; k < 3; ++k) {
       if (levers[k] == 0.0) continue;
-      sum += levers[k] * length(w[1] * x[6 + k] - w[2] * x[3 + k], w[2] * x[k] - w[0] * x[6 + k],
-                                w[0] * x[3 + k] - w[1] * x[k]);
+      sum += levers[k] *
+             length(w[1] * x[6 + k] - w[2] * x[3 + k], w[2] * x[k] - w[0] * x[6 + k], w[0] * x[3 + k] - w[1] * x[k]);
     }
     return root_of_three * sum;
   }
