@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
+#include "component/joint_roles.h"
 #include "contract/joint_contract.h"
 #include "contract/joint_words.h"
 #include "contract/slope.h"
@@ -164,14 +165,17 @@ class DerivativeCheck {
   }
 
  private:
-  /// Beyond the end of its play a joint is another one: it has no force on one side, and on the other it may have none.
+  /// Beyond the end of its play, or of a contact, a joint is another one: it has no force on one side, and on the other
+  /// it may have none.
   double largest_shift() const {
-    const double play = probe_.layout().clearance;
-    if (!(play > 0.0)) return 0.02;
+    const JointLayout& layout = probe_.layout();
+    const double play = layout.clearance;
     const MarkerPair& m = moment_.markers;
-    double beyond = std::abs((vector3(m.b.position) - vector3(m.a.position)).norm() - play);
-    for (const double g : probe_.events(moment_).g) {
-      if (std::abs(g) > 1e-9 * play) beyond = std::min(beyond, std::abs(g));
+    double beyond = play > 0.0 ? std::abs((vector3(m.b.position) - vector3(m.a.position)).norm() - play) : unbounded;
+    const std::vector<double> g = probe_.events(moment_).g;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      const bool counts = play > 0.0 || event_role(layout, i) != EventRole::none;
+      if (counts && std::abs(g[i]) > 1e-9 * play) beyond = std::min(beyond, std::abs(g[i]));
     }
     return std::min(0.02, std::max(0.2 * beyond, 1e-6 * play));
   }

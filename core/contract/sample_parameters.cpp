@@ -32,6 +32,7 @@ struct Plan {
   std::map<std::string, double> numbers{};  ///< SI
   std::map<std::string, std::shared_ptr<const ParameterBlock>> laws{};
   Order order = Order::rising;
+  bool closed = false;  ///< formulas come again after one turn
 };
 
 /// f(t) = c (1 + sin(2 t)/2): a function whose three values differ from each other.
@@ -44,13 +45,19 @@ Status evaluate_sample(const void* self, double t, TimeValue* out, Message*) noe
   return Status::ok;
 }
 
-/// f(x, ...) = c x: a formula that rises with its first variable alone.
+/// f(x, ...) = c x, a formula that rises with its first variable alone; or c (1 + cos(x)/5), a round closed curve as a
+/// distance over the angle.
+struct SampleFormula {
+  double size;
+  bool closed;
+};
 constexpr abi::FormulaTable sample_formula{
     sizeof(abi::FormulaTable),
     [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message*) noexcept {
-      const double c = static_cast<const SampleFunction*>(self)->size;
-      for (std::size_t i = 0; i < slopes.size; ++i) slopes[i] = i == 0 ? c : 0.0;
-      *value = c * variables[0];
+      const auto& [c, closed] = *static_cast<const SampleFormula*>(self);
+      const double x = variables[0];
+      for (std::size_t i = 0; i < slopes.size; ++i) slopes[i] = i > 0 ? 0.0 : closed ? -0.2 * c * std::sin(x) : c;
+      *value = closed ? c * (1.0 + 0.2 * std::cos(x)) : c * x;
       return Status::ok;
     },
     [](const void*) noexcept { return std::int32_t{0}; },
@@ -184,7 +191,8 @@ class Sampler {
     } else if (p.kind == ParameterKind::formula) {
       const std::vector<VariableRow> variables = variables_of(p);
       const Unit first = variables.empty() ? Unit{} : unit_of(variables.front().unit, block).value_or(Unit{});
-      const auto function = std::make_shared<const SampleFunction>(SampleFunction{size / usual_size(first.dimension)});
+      const auto function = std::make_shared<const SampleFormula>(
+          SampleFormula{plan.closed ? size : size / usual_size(first.dimension), plan.closed});
       value.formula = Formula(sample_formula, function.get());
       value.function_owner = function;
     } else {
@@ -293,10 +301,15 @@ class Sampler {
 
   /// The smallest set of optional parameters with which the constructor is content.
   std::optional<Plan> fewest(Plan plan) {
-    // Lengths and speeds that a constructor compares may have to rise or to fall along the table.
-    for (const Order order : {Order::rising, Order::falling, Order::equal}) {
-      plan.order = order;
-      if (const std::optional<Plan> found = with_more(plan, 3)) return found;
+    // A formula may have to be a closed curve; lengths and speeds that a constructor compares may have to rise or to
+    // fall along the table.
+    for (const bool closed : {false, true}) {
+      plan.closed = closed;
+      for (const Order order : {Order::rising, Order::falling, Order::equal}) {
+        plan.order = order;
+        if (const std::optional<Plan> found = with_more(plan, 3)) return found;
+      }
+      if (std::ranges::none_of(table(), [](const Parameter& p) { return p.kind == ParameterKind::formula; })) break;
     }
     return std::nullopt;
   }
