@@ -19,6 +19,7 @@
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
 #include "assembly/start_branches.h"
+#include "assembly/start_overlap.h"
 #include "assembly/start_rows.h"
 #include "assembly/start_velocities.h"
 #include "base/index.h"
@@ -356,6 +357,7 @@ class Assembler {
     Evaluation released(system_);
     if (!system_.evaluate(point(state), term_position | term_velocity, released)) throw_fault(model_, released.fault);
     refuse_massless_motion(system_, released);
+    if (full) refuse_overlap(system_, state, released);
     NewtonStageSolver solver(system_, {});
     solver.use_history(state.h());
     StateView view = state.view();

@@ -164,8 +164,9 @@ class Walk {
     return false;
   }
 
-  // Places the body at the free end of a joint; false when its type cannot.
+  // Places the body at the free end of a joint; false when its type cannot. What exerts forces alone holds nothing.
   bool place_by(int j, bool second_is_free) {
+    if (system_.joints().layout(j).constraint_rows == 0) return false;
     const JointElement& joint = model_.joints[at(j)];
     const double coordinate = std::isnan(coordinates_[at(j)]) ? 0.0 : coordinates_[at(j)];
     Pose relative{};
