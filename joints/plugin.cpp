@@ -32,6 +32,7 @@ Component point_on_curve();
 Component point_on_curve_lift_off();
 Component slot_contact();
 Component arc_contact();
+Component curve_contact();
 }  // namespace freeplay
 
 FREEPLAY_PLUGIN(joints) {
@@ -65,6 +66,7 @@ FREEPLAY_PLUGIN(joints) {
                                          point_on_curve(),
                                          point_on_curve_lift_off(),
                                          slot_contact(),
-                                         arc_contact()};
+                                         arc_contact(),
+                                         curve_contact()};
   return publish(*host, *manifest, "joints", "0.1.0", components);
 }

@@ -7,6 +7,7 @@ import re
 import shlex
 import unittest
 
+import curve_reference
 from program import MECHANISMS, ROOT, ProgramTest, drawing
 
 FOLDER = os.path.join(MECHANISMS, "gallery")
@@ -154,6 +155,30 @@ class Gallery(ProgramTest):
         force, times = columns["force.head.fy"], columns["time"]
         peaks = [times[k] for k in range(420, 620) if force[k - 1] < force[k] >= force[k + 1]]
         self.assertAlmostEqual(2 * math.pi / slowest, (peaks[-1] - peaks[0]) / (len(peaks) - 1), delta=3e-5)
+
+    def test_a_finger_stays_on_its_cam_as_deep_as_both_curves_say(self):
+        columns = self.run_file("finger-follower")
+
+        def ramp(x, begin, end):
+            u, w = (x - begin) / (end - begin), end - begin
+            if not 0 < u < 1:
+                return (0.0 if u <= 0 else 1.0), 0.0, 0.0
+            return u ** 3 * (10 - 15 * u + 6 * u * u), 30 * (u * (1 - u)) ** 2 / w, 60 * u * (1 - u) * (1 - 2 * u) / w ** 2
+
+        def cam(x):
+            up, down = (ramp(math.degrees(x) % 360, *ends) for ends in ((100, 180), (180, 260)))
+            value, slope, bend = (0.008 * (a - b) for a, b in zip(up, down))
+            return 0.02 + value, math.degrees(slope), bend * math.degrees(1) ** 2
+        pad, angles = curve_reference.ellipse(0.012, 0.008), None
+        for row, turn in enumerate(columns["joint.shaft.angle"]):
+            finger = columns["joint.hub.angle"][row]
+            x, y = -0.05 + 0.05 * math.cos(finger), 0.028 + 0.05 * math.sin(finger)
+            c, s = math.cos(turn), math.sin(turn)
+            gap, *_, angles = curve_reference.touch(cam, pad, (c * x + s * y, c * y - s * x), finger - turn, angles)
+            self.assertAlmostEqual(-gap, columns["force.pad.delta"][row], delta=1e-12)
+            if row > 0:  # it starts just touching
+                self.assertGreater(columns["force.pad.fn"][row], 10)
+        self.assertAlmostEqual(0.16, max(columns["joint.hub.angle"]), delta=0.005)
 
     def test_a_geneva_wheel_turns_by_a_quarter_and_rests(self):
         columns = self.run_file("geneva")
