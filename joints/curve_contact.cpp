@@ -170,7 +170,7 @@ Component curve_contact() {
                   "for delta > 0.",
        .validity = "One curve is round everywhere, and each hollow of the other wider than its flattest part, so that "
                    "they touch in one place; depths far below the radii of curvature there.",
-       .references = "Litvin 2004, Gear Geometry and Applied Theory (noncircular gears)",
+       .references = "Litvin and Fuentes 2004, Gear Geometry and Applied Theory",
        .parameters = {curve_contact_parameters.data(), curve_contact_parameters.size()}});
 }
 
