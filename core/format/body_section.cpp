@@ -22,7 +22,7 @@ void read_pose(const CheckedValue& value, Body& body) {
     map.refuse("angle", "only in planar models; use 'rpy' or 'quaternion'");
   } else if (const auto angle = map.find("angle")) {
     body.angle = angle->quantity(dimension::angle);
-    if (body.angle) doubt_angle(*angle, *body.angle);
+    if (body.angle) doubt_direction(*angle, *body.angle);
   }
   map.finish();
 }

@@ -93,6 +93,8 @@ class MotionDoubts {
                     fmt::format("'{}' goes from {:.6g} to {:.6g} rad: write 'unit: deg' if degrees are meant, else "
                                 "'unit: rad'",
                                 written->path(), low, high));
+    } else if (bare && doubt_pins(driver, fastest, *written, speeds ? "unit: rpm" : "unit: deg")) {
+      return;
     } else if (bare && fastest > bare_limit::angular_speed) {
       written->warn("doubtful-speed",
                     fmt::format("'{}' comes to {:.6g} rad/s, that is {:.0f} rpm: write 'unit: {}' if that is meant, "
@@ -230,8 +232,55 @@ class MotionDoubts {
                                                  "are meant, else '{1:.6g} rad'",
                                                  written.path(), swing));
     } else {
-      doubt_angular_speed(written, speed);
+      if (!doubt_pins(driver, speed, written, fmt::format("{:.6g} rpm", speed))) doubt_angular_speed(written, speed);
     }
+  }
+
+  /// The joint that goes round farthest from the axis of a driven one, on the link that is turned.
+  struct Pin {
+    const Marker* marker = nullptr;
+    double arm = 0.0;  ///< [m]
+  };
+  Pin farthest_pin(const JointElement& driven) const {
+    const Model& model = draft_.model;
+    Pin farthest;
+    for (const int axle : {driven.marker_a, driven.marker_b}) {
+      const Marker& here = model.markers[static_cast<std::size_t>(axle)];
+      if (here.body == ground) continue;
+      for (const JointElement& joint : model.joints) {
+        if (joint.is_force || joint.gear >= 0 || &joint == &driven) continue;
+        for (const int end : {joint.marker_a, joint.marker_b}) {
+          const Marker& there = model.markers[static_cast<std::size_t>(end)];
+          if (there.body != here.body) continue;
+          const double arm = distance_from_axis(here, there);
+          if (arm > farthest.arm) farthest = {&there, arm};
+        }
+      }
+    }
+    return farthest;
+  }
+
+  double distance_from_axis(const Marker& axle, const Marker& pin) const {
+    Vector3 apart;
+    for (std::size_t i = 0; i < 3; ++i) apart[i] = pin.position[i] - axle.position[i];
+    if (draft_.model.space == Space::spatial) {
+      double along = 0.0;
+      for (std::size_t i = 0; i < 3; ++i) along += apart[i] * axle.rotation[3 * i + 2];
+      for (std::size_t i = 0; i < 3; ++i) apart[i] -= along * axle.rotation[3 * i + 2];
+    }
+    return std::hypot(apart[0], apart[1], apart[2]);
+  }
+
+  /// A crank whose pin outruns those of all engines. True after a message.
+  bool doubt_pins(const Driver& driver, double speed, const CheckedValue& written, const std::string& instead) const {
+    const Pin pin = farthest_pin(draft_.model.joints[static_cast<std::size_t>(driver.joint)]);
+    if (!(speed * pin.arm > bare_limit::pin_speed)) return false;
+    written.warn("doubtful-speed",
+                 fmt::format("'{}' comes to {:.6g} rad/s, that is {:.0f} rpm, with which the joint at '{}' would go "
+                             "round at {:.3g} m/s (pins of fast engines do at 40): write '{}' if that is meant, else "
+                             "the unit rad/s",
+                             written.path(), speed, speed * 30.0 / M_PI, pin.marker->name, speed * pin.arm, instead));
+    return true;
   }
 
   /// The written number by which the motion swings to each side, or which it goes through in all, in the run or in a

@@ -167,6 +167,18 @@ bool doubt_angle(const CheckedValue& written, double radians) {
   return true;
 }
 
+bool doubt_direction(const CheckedValue& written, double radians) {
+  if (doubt_angle(written, radians)) return true;
+  if (std::abs(radians) <= bare_limit::direction * (1.0 + 1e-12) || names_a_unit(written)) return false;
+  // Computed directions have many digits; 4 or 5.5 radians are nothing that is thought of as a direction.
+  if (says_pi(written) || !is_round(radians)) return false;
+  written.warn("doubtful-angle",
+               fmt::format("'{0}' is {1:.6g} rad, the direction of {2:.0f} deg: write '{1:.6g} deg' if degrees are "
+                           "meant, else '{1:.6g} rad'",
+                           written.path(), radians, std::remainder(radians, 2.0 * pi) * 180.0 / pi));
+  return true;
+}
+
 void doubt_angular_speed(const CheckedValue& written, double speed) {
   if (std::abs(speed) <= bare_limit::angular_speed || names_a_unit(written)) return;
   written.warn("doubtful-speed", fmt::format("'{0}' is {1:.6g} rad/s, that is {2:.0f} rpm: write '{1:.6g} rpm' if "

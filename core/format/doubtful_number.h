@@ -10,16 +10,18 @@ namespace freeplay {
 /// A number without a unit is doubted beyond these, as it may be meant in another unit: degrees, rpm, mm/s^2, ms, mm.
 /// Sources: 1000 rad/s are 9549 rpm, beyond what linkages turn at; 50 m/s^2 are five times the earth's gravity.
 namespace bare_limit {
-inline constexpr double angle = 6.2831853071795864769;  ///< one turn [rad]
-inline constexpr double angular_speed = 1000.0;         ///< [rad/s]
-inline constexpr double gravity = 50.0;                 ///< [m/s^2]
-inline constexpr double step = 5e-3;                    ///< and a fiftieth of the run [s]
-inline constexpr double long_step = 0.1;                ///< in whatever run [s]
-inline constexpr double length = 100.0;                 ///< in terms of the lengths around it
-inline constexpr double start = 50.0;                   ///< likewise: of a slide at its start
-inline constexpr double bearing = 20.0;                 ///< likewise: radii, lengths and plays of bearings
-inline constexpr double slide_speed = 50.0;             ///< [m/s]
-inline constexpr double rows = 1e7;                     ///< of a result
+inline constexpr double angle = 6.2831853071795864769;   ///< one turn [rad]
+inline constexpr double direction = 3.1415926535897932;  ///< half a turn [rad]
+inline constexpr double angular_speed = 1000.0;          ///< [rad/s]
+inline constexpr double pin_speed = 50.0;                ///< of a joint on a driven link [m/s]; in fast engines 40
+inline constexpr double gravity = 50.0;                  ///< [m/s^2]
+inline constexpr double step = 5e-3;                     ///< and a fiftieth of the run [s]
+inline constexpr double long_step = 0.1;                 ///< in whatever run [s]
+inline constexpr double length = 100.0;                  ///< in terms of the lengths around it
+inline constexpr double start = 50.0;                    ///< likewise: of a slide at its start
+inline constexpr double bearing = 20.0;                  ///< likewise: radii, lengths and plays of bearings
+inline constexpr double slide_speed = 50.0;              ///< [m/s]
+inline constexpr double rows = 1e7;                      ///< of a result
 }  // namespace bare_limit
 
 /// What stands in the brackets of functions such as sin and smooth, which says nothing of the unit of a value.
@@ -33,6 +35,8 @@ bool says_unit(const CheckedValue& value, Arguments arguments = Arguments::passe
 
 /// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi. True after a message.
 bool doubt_angle(const CheckedValue& written, double radians);
+/// The same of a direction, where more than half a turn is doubted, too, if it is a round number.
+bool doubt_direction(const CheckedValue& written, double radians);
 /// `doubtful-speed`.
 void doubt_angular_speed(const CheckedValue& written, double speed);
 /// The same of a speed along a slide.

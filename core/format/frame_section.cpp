@@ -15,7 +15,7 @@ std::optional<Vector3> read_polar(const CheckedValue& value) {
   const auto radius = (*items)[0].quantity(dimension::length);
   const auto angle = (*items)[1].quantity(dimension::angle);
   if (!radius || !angle) return std::nullopt;
-  doubt_angle((*items)[1], *angle);
+  doubt_direction((*items)[1], *angle);
   return Vector3{*radius * std::cos(*angle), *radius * std::sin(*angle), 0.0};
 }
 
@@ -42,7 +42,7 @@ Draft::Frame read_frame(const CheckedValue& entry, BodyId body) {
     map.conflict("position", "polar");
     if (polar) frame.position = read_polar(*polar).value_or(Vector3{});
     if (angle) frame.angle = angle->quantity(dimension::angle).value_or(0.0);
-    if (angle) doubt_angle(*angle, frame.angle);
+    if (angle) doubt_direction(*angle, frame.angle);
   }
   map.finish();
   return frame;

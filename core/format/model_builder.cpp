@@ -10,6 +10,7 @@
 #include "format/analysis_section.h"
 #include "format/body_section.h"
 #include "format/doubtful_body.h"
+#include "format/doubtful_end.h"
 #include "format/doubtful_gear.h"
 #include "format/doubtful_load.h"
 #include "format/doubtful_motion.h"
@@ -80,6 +81,7 @@ class ModelBuilder {
     doubt_bodies(draft_);
     doubt_motions(draft_);
     doubt_rests(draft_);
+    if (simulation_) doubt_end(draft_, *simulation_);
     doubt_gears(draft_);
     doubt_loads(draft_);
     if (!document_.incomplete()) warn_unused_frames(draft_);

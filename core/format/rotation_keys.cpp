@@ -27,7 +27,7 @@ std::optional<Rotation> read_rotation(MapReader& map) {
   map.conflict("rpy", "quaternion");
   if (rpy) {
     const auto angles = rpy->quantities(3, dimension::angle);
-    for (std::size_t i = 0; angles && i < 3; ++i) doubt_angle(rpy->item(i), (*angles)[i]);
+    for (std::size_t i = 0; angles && i < 3; ++i) doubt_direction(rpy->item(i), (*angles)[i]);
     if (angles) return from_roll_pitch_yaw((*angles)[0], (*angles)[1], (*angles)[2]);
     return std::nullopt;
   }

@@ -213,7 +213,7 @@ SOUND = [
     (RACK, "ratio: 0.05", "ratio: 5 m/rad"),
     (BOX, FOOT, FOOT + FOOT.replace("foot", "again").replace("2e4", "1e4")),
     (BOX, FOOT, FOOT + "  idle: {type: spring-damper, between: [ground, box], preload: 10}\n"),
-    (BOX, "stiffness: 2e4", "stiffness: 800"),
+    (BOX, "stiffness: 2e4", "stiffness: 8e3"),
     (BOX, "stiffness: 2e4", "stiffness: 20", "drivers: {jack: {joint: guide, kind: position, value: 0.01*t}}\n"),
     (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "", "initial: {speeds: {b: 10}}\n"),
     (TRAIN, "  pair: {type: gear, of: [a, b], ratio: 2}\n", "", "forces: {load: {type: torque, on: two, value: 0.1}}\n"),
