@@ -57,6 +57,12 @@ struct Spring {
     if (!spring) return linear;
     return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
   }
+  /// A sentence where the ends of a linear spring are as good as at one place, else null.
+  const char* doubt(double length) const {
+    if (!(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
+    return "The spring is pressed together to less than a twentieth of its free length, as none can be; beyond that it "
+           "changes sides.";
+  }
   /// Where a formula changes its form.
   void write_kinks(double stretch, double rate, Span<double> g) const {
     const std::size_t own = spring ? static_cast<std::size_t>(spring.switches()) : 0;
@@ -77,6 +83,8 @@ struct Spring {
       layout.coordinate = Coordinate::angle;
     }
   }
+
+  static constexpr double most_pressed = 0.05;  ///< coils lie on each other at a third or more
 
   Kind kind;
   double stiffness, damping, free, preload;
@@ -125,6 +133,9 @@ class SpringDamper final : public Joint {
     }
     const Eigen::Vector2d d = position(*in.b) - position(*in.a), rate = velocity(*in.b) - velocity(*in.a);
     if (d.norm() >= smallest_length) spring_.write_kinks(d.norm() - spring_.free, d.dot(rate) / d.norm(), g);
+  }
+  const char* warning(const JointInput& in) const override {
+    return spring_.kind == linear ? spring_.doubt((position(*in.b) - position(*in.a)).norm()) : nullptr;
   }
   void apply(const JointInput& in, JointForces& out) const override {
     if (spring_.kind == linear) {
@@ -202,6 +213,9 @@ class SpatialSpringDamper final : public Joint {
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
+  }
+  const char* warning(const JointInput& in) const override {
+    return spring_.kind == linear ? spring_.doubt((space::position(*in.b) - space::position(*in.a)).norm()) : nullptr;
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const Pair pair = pair_of(in);

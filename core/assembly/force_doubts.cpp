@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <optional>
 #include <tuple>
 
 #include <fmt/format.h>
@@ -17,6 +19,9 @@ constexpr double odd_free_length = 100.0;  // between the free length of a sprin
 constexpr double no_length = 1e-9;         // of a spring [m]
 constexpr double most_damping = 1000.0;    // by that of the limit of swinging
 constexpr double most_stretch = 10.0;      // of a spring by a weight, by the model's size
+constexpr double most_press = 1.0;         // the same of one that is pressed together, by its length
+constexpr double slow_swing = 30.0;        // period of a body on springs, in runs
+constexpr double hardly_moved = 0.01;      // way that springs push it in the run, by the model's size
 
 class ForceDoubts {
  public:
@@ -158,40 +163,80 @@ class ForceDoubts {
 
   // --- too soft --------------------------------------------------------------------------------------------------
 
+  /// Springs that alone hold a body, and what pulls along them.
+  struct Hold {
+    const JointElement* first = nullptr;
+    double stiffness = 0.0, push = 0.0;  ///< of all [N/m], largest sum of their forces at the start [N]
+    double longest = 0.0, along = 0.0;   ///< [m], of the gravity that they hold [m/s^2]
+    bool pressed = true;                 ///< each by the weight, towards its other end
+  };
+
   /// A body that springs alone hold against its weight, on a slide or free.
   void judge_softness(BodyId body) const {
+    const std::optional<Hold> hold = hold_of(body);
+    if (!hold || hold->first == nullptr) return;
+    const Body& held = model_.bodies[at(body)];
+    const double stretch = hold->along * held.mass / hold->stiffness;
+    const double most = hold->pressed ? most_press * std::max(hold->longest, system_.size())
+                                      : most_stretch * std::max(hold->longest, system_.size());
+    if (stretch > most) {
+      doubt_("doubtful-value",
+             fmt::format("'{}' is so soft that the weight of '{}' would {} it by {:.3g} m{} in a mechanism of {:.2g} "
+                         "m: check its stiffness and its unit",
+                         hold->first->name, held.name, hold->pressed ? "press" : "stretch", stretch,
+                         hold->pressed ? fmt::format(", more than its {:.3g} m,", hold->longest) : std::string(),
+                         system_.size()),
+             *hold->first);
+      return;
+    }
+    const double span = model_.settings.end - model_.settings.start;
+    const double period = 2.0 * std::numbers::pi * std::sqrt(held.mass / hold->stiffness);
+    const double way = 0.5 * hold->push / held.mass * span * span;
+    if (!(period > slow_swing * span) || hold->along > 0.0 || way > hardly_moved * system_.size()) return;
+    doubt_("doubtful-value",
+           fmt::format("'{}' hardly acts: {:.4g} kg of '{}' swing on {:.3g} N/m with a period of {:.3g} s, {:.0f} "
+                       "times the run of {:.3g} s: check its stiffness and its unit, or the end of the run",
+                       hold->first->name, held.mass, held.name, hold->stiffness, period, period / span, span),
+           *hold->first);
+  }
+
+  /// Nothing where other elements hold the body, too.
+  std::optional<Hold> hold_of(BodyId body) const {
     const Vector3& gravity = model_.bodies[at(body)].gravity;
-    double along = std::hypot(gravity[0], gravity[1], gravity[2]), stiffness = 0.0, longest = system_.size();
-    const JointElement* first = nullptr;
+    Hold hold{.along = std::hypot(gravity[0], gravity[1], gravity[2])};
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
-      if (joint.gear >= 0 && couples(joint.gear, body)) return;
+      if (joint.gear >= 0 && couples(joint.gear, body)) return std::nullopt;
       if (joint.gear >= 0 || (body_of(joint.marker_a) != body && body_of(joint.marker_b) != body)) continue;
-      if (joint.is_force && joint.parameters && has_formula(*joint.parameters)) return;
+      if (joint.is_force && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
       const double k = joint.is_force && joint.parameters ? number(joint, "stiffness") : std::nan("");
       if (joint.is_force && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
-        const auto [x, y, z] = apart(joint);
-        stiffness += k;
-        longest = std::max({longest, std::hypot(x, y, z), number(joint, "free_length")});
-        if (first == nullptr) first = &joint;
+        add_spring(hold, joint, k, body);
       } else if (joint.is_force && (k == 0.0 || number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
       } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) &&
                  std::ranges::count(model_.drivers, j, &Driver::joint) == 0) {
         const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
-        along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
+        hold.along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
       } else {
-        return;
+        return std::nullopt;
       }
     }
-    if (first == nullptr || !(along * model_.bodies[at(body)].mass > most_stretch * longest * stiffness)) return;
-    doubt_(
-        "doubtful-value",
-        fmt::format("'{}' is so soft that the weight of '{}' would stretch it by {:.3g} m in a mechanism of {:.2g} m: "
-                    "check its stiffness and its unit",
-                    first->name, model_.bodies[at(body)].name, along * model_.bodies[at(body)].mass / stiffness,
-                    system_.size()),
-        *first);
+    return hold;
+  }
+
+  void add_spring(Hold& hold, const JointElement& joint, double k, BodyId body) const {
+    const auto [x, y, z] = apart(joint);
+    const double length = std::hypot(x, y, z), free = number(joint, "free_length"), preload = number(joint, "preload");
+    const Vector3& gravity = model_.bodies[at(body)].gravity;
+    // From the body towards the other end.
+    const double towards =
+        (body_of(joint.marker_a) == body ? 1.0 : -1.0) * (x * gravity[0] + y * gravity[1] + z * gravity[2]);
+    hold.stiffness += k;
+    hold.push += std::abs((std::isnan(free) ? 0.0 : k * (length - free)) + (std::isnan(preload) ? 0.0 : preload));
+    hold.longest = std::max({hold.longest, length, free});
+    hold.pressed = hold.pressed && towards > 0.0;
+    if (hold.first == nullptr) hold.first = &joint;
   }
 
   static bool has_formula(const ParameterBlock& block) {
