@@ -17,6 +17,7 @@ constexpr double most_lengthened = 4.0;  // steps that go round a singular posit
 // Around a kink at t the side is one of rounding.
 double margin(double t) { return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(t); }
 constexpr double shortest_part = 1e-6;  // of the run, see shortest_change()
+constexpr double nearly_a_step = 1e-9;
 
 // What depends on time in a way that cannot be analysed is looked at so closely that no change this long is missed [s].
 double shortest_change(const Settings& settings) {
@@ -226,12 +227,34 @@ bool Corners::note_jumps(double kink) {
   return any;
 }
 
+// What a joint of a plugin declares of its dependence on time, where no change was seen.
+void Corners::format_declared(double step, std::span<const std::string> said) {
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const double scale = run_.system.joints().layout(j).time_scale;
+    const std::string element = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+    if (!(scale > 0.0 && scale < step * (1.0 - nearly_a_step)) || std::ranges::count(said, element) > 0) continue;
+    run_.warnings.push_back(
+        fmt::format("{}: it declares that it changes within {:.2g} s, which the step of {:.3g} s goes over; ask for an "
+                    "accuracy instead, or for steps of {:.2g} s",
+                    element, scale, step, 0.25 * scale));
+    run_.outcome.doubts.push_back(
+        {.id = "unresolved-input",
+         .level = Trust::doubtful,
+         .message =
+             fmt::format("{} declares changes within {:.2g} s, which steps of {:.3g} s go over", element, scale, step),
+         .element = element,
+         .value = scale,
+         .limit = step});
+  }
+}
+
 void Corners::format_unresolved() {
   if (run_.adaptive) return format_too_short();
   const double step = std::min(run_.settings.step, run_.settings.interval);
+  std::vector<std::string> said;
   for (const InputActivity::Unresolved& input : InputActivity(run_.system, run_.settings.interval, 0.0)
                                                     .unresolved_by(step, point(run_.accepted), run_.e_accepted)) {
-    const std::string element = fmt::format("{} '{}'", input.section, *input.name);
+    const std::string element = said.emplace_back(fmt::format("{} '{}'", input.section, *input.name));
     const double apart = input.to - input.from, wanted = (input.corners ? 0.1 : 0.25) * apart;
     const std::string what =
         input.corners
@@ -255,6 +278,7 @@ void Corners::format_unresolved() {
          .value = apart,
          .limit = step});
   }
+  format_declared(step, said);
 }
 
 // With error control nothing is gone over but what lasts less than the times of the run are looked at.

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "run/input_activity.h"
@@ -53,6 +55,7 @@ class Corners {
 
  private:
   void format_too_short();
+  void format_declared(double step, std::span<const std::string> said);
   bool loads_jump(double corner);
   void note_driven(const Evaluation& e);
   int row_that_jumps() const;
