@@ -15,7 +15,9 @@
 #include "assembly/failure.h"
 #include "assembly/force_turns.h"
 #include "assembly/gear_turn_choice.h"
+#include "assembly/idle_elements.h"
 #include "assembly/leg_modes.h"
+#include "assembly/locked_guide.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
 #include "assembly/start_branches.h"
@@ -371,7 +373,16 @@ class Assembler {
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
     start.structure = examine_structure(system_, released, start.state, closed_, e_, dead_start(system_, start.state),
                                         unstable_start(system_, start.state));
+    doubt_guides(system_, start.state, start.structure);
+    judge_elements(state, start.structure);
     return start;
+  }
+
+  void judge_elements(const State& state, Structure& structure) {
+    Evaluation e(system_);
+    if (!system_.evaluate(point(state), term_position | term_velocity | term_coordinate, e))
+      throw_fault(model_, e.fault);
+    doubt_elements(system_, e, structure);
   }
 
   void initialize_joints(State& state) {

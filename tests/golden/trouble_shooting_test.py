@@ -215,6 +215,12 @@ CASES = {
         (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
     "'...' has the same frames and numbers as '...', so that both act as one twice as strong: ... [duplicate-force]":
         (0, pendulum("initial:", "forces:\n  one: %s\n  two: %s\ninitial:" % (SPRING, SPRING)), RUN),
+    "'...' moves nothing: joint '...' keeps '...' from ... against '...'; ... [idle-force]":
+        (0, pendulum("initial:", "forces: {rub: {type: joint-friction, between: [ground, rod], friction: 1}}\ninitial:"), RUN),
+    "joint '...' cannot move: with ... it closes a loop in which nothing can; ... [locked]":
+        (0, driven("drivers:", "  pin: {type: revolute, between: [rod/tip, bar]}\n  hand: {type: revolute, between: [bar/tip, sled]}\n"
+                               "  guide: {type: prismatic, between: [rod, sled]}\ndrivers:")
+         .replace("joints:", "  bar: {mass: 1 kg, inertia: 0.1, frames: {tip: [0.5, 0]}, pose: {angle: 2}}\n  sled: {mass: 1 kg, inertia: 0.1}\njoints:"), RUN),
     "'...' does nothing: none of its numbers that make a force is given; ...":
         (0, pendulum("initial:", "forces:\n  one: %s\ninitial:" % SPRING.replace(", stiffness: 10", "")), RUN),
     "'...' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; ... [left-free]":

@@ -1,0 +1,249 @@
+#include "assembly/idle_elements.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "assembly/row_space.h"
+#include "base/index.h"
+#include "base/text.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double one_place = 1e-9;       // ends of an element [m]
+constexpr double held = 1e-9;            // motion along an element that rows leave, of a unit vector
+constexpr double by_sound = 1e-6;        // stop of a body [s]: sound crosses 5 mm of steel in it
+constexpr double far_below_step = 0.01;  // of a fixed step, or of the time between rows
+constexpr double most_beyond = 0.1;      // of the way between the ends of a stop
+constexpr double least_beyond = 0.01;    // rad, or of the size of the model
+
+class Elements {
+ public:
+  Elements(const System& system, const Evaluation& e, Structure& structure)
+      : system_(system), model_(system.model()), e_(e), structure_(structure) {}
+
+  void judge() {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& element = model_.joints[at(j)];
+      if (!element.is_force || !element.parameters || element.has_play || element.gear >= 0) continue;
+      if (judge_idle(j)) continue;
+      judge_damping(j);
+      judge_ends(j);
+    }
+  }
+
+ private:
+  BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+  int width() const { return system_.layout().body_velocities(); }
+
+  void doubt(const char* id, const std::string& message, const JointElement& element) {
+    if (structure_.doubts.size() >= Structure::most_doubts) return;
+    const std::string own = element.name.substr(element.name.rfind('.') + 1);
+    structure_.doubts.push_back({id, message, element.location, std::max(character_count(own), 1)});
+  }
+
+  std::string body_name(int marker) const {
+    return body_of(marker) == ground ? std::string("ground") : model_.bodies[at(body_of(marker))].name;
+  }
+
+  std::optional<Eigen::Vector3d> line_of(const JointElement& element) const {
+    const double* a = e_.markers[at(element.marker_a)].position;
+    const double* b = e_.markers[at(element.marker_b)].position;
+    const Eigen::Vector3d apart(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+    if (apart.norm() < one_place) return std::nullopt;
+    return apart.normalized();
+  }
+
+  /// Rate of what the element acts along, by all velocities: its coordinate, or the distance of its ends.
+  std::optional<MatrixXd> rate_of(int j) const {
+    const JointElement& element = model_.joints[at(j)];
+    double row[12] = {}, bias = 0.0;
+    if (element.ideal_layout.coordinate != Coordinate::none) {
+      system_.joints().coordinate_row(j, e_, row, bias);
+    } else {
+      const std::optional<Eigen::Vector3d> line = line_of(element);
+      if (!line) return std::nullopt;
+      for (int k = 0; k < 2; ++k) {
+        const int marker = k == 0 ? element.marker_a : element.marker_b;
+        if (body_of(marker) == ground) continue;
+        double along[6] = {};
+        for (int i = 0; i < 3; ++i) along[i] = (k == 0 ? -1.0 : 1.0) * (*line)[i];
+        system_.markers().row(marker, along, e_, row + at(k * width()));
+      }
+    }
+    MatrixXd rate = MatrixXd::Zero(1, system_.layout().nv());
+    const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < width() && bodies[k] != ground; ++c) rate(0, width() * bodies[k] + c) += row[width() * k + c];
+    }
+    return rate;
+  }
+
+  // --- what does nothing -----------------------------------------------------------------------------------------
+
+  /// True after a message.
+  bool judge_idle(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const std::optional<MatrixXd> rate = rate_of(j);
+    for (int i = 0; i < static_cast<int>(model_.joints.size()); ++i) {
+      const JointElement& joint = model_.joints[at(i)];
+      if (joint.is_force || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
+      if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
+      const bool pinned = !rate && joint.ideal_layout.pin != 0 && !line_of(joint) && same_place(joint, element);
+      if (!pinned || has_free_length(element)) continue;
+      doubt("idle-force",
+            fmt::format("'{}' does nothing: joint '{}' holds its two ends at one place; name the frames between which "
+                        "it acts, or write 'kind: rotational' if it turns",
+                        element.name, joint.name),
+            element);
+      return true;
+    }
+    return false;
+  }
+
+  bool same_bodies(const JointElement& one, const JointElement& other) const {
+    return std::minmax(body_of(one.marker_a), body_of(one.marker_b)) ==
+           std::minmax(body_of(other.marker_a), body_of(other.marker_b));
+  }
+
+  bool same_place(const JointElement& one, const JointElement& other) const {
+    const double* a = e_.markers[at(one.marker_a)].position;
+    const double* b = e_.markers[at(other.marker_a)].position;
+    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) < one_place;
+  }
+
+  // Where it is long it pushes in no direction, which is said elsewhere.
+  static bool has_free_length(const JointElement& element) {
+    const auto found = element.parameters->values.find("free_length");
+    return found != element.parameters->values.end() && found->second.number > 0.0;
+  }
+
+  /// A joint whose rows let the element not move where it stands; a line between two points turns, and may move later.
+  bool leaves_nothing(int joint, const MatrixXd& rate, const JointElement& element) {
+    if (element.ideal_layout.coordinate == Coordinate::none) return false;
+    const Slice slice = system_.layout().rows(joint);
+    if (slice.size == 0) return false;
+    const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
+    MatrixXd rows = MatrixXd::Zero(slice.size, 2 * width()), own = MatrixXd::Zero(1, 2 * width());
+    for (int k = 0; k < 2; ++k) {
+      if (bodies[k] == ground) continue;
+      rows.middleCols(k * width(), width()) =
+          constraints().block(slice.offset, width() * bodies[k], slice.size, width());
+      own.middleCols(k * width(), width()) = rate.middleCols(width() * bodies[k], width());
+    }
+    return own.norm() > 0.0 && (own * null_space(rows)).norm() <= held * own.norm();
+  }
+
+  void say_idle(const JointElement& element, const JointElement& joint) {
+    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    const std::string kind =
+        element.parameters->values.contains("kind")
+            ? fmt::format("write 'kind: {}' if that is meant, else ", turns ? "linear" : "rotational")
+            : std::string();
+    doubt("idle-force",
+          fmt::format("'{}' moves nothing: joint '{}' keeps '{}' from {} against '{}'; {}name two bodies that do",
+                      element.name, joint.name, body_name(element.marker_b),
+                      turns ? std::string("turning")
+                            : fmt::format("moving along x of '{}'", model_.markers[at(element.marker_a)].name),
+                      body_name(element.marker_a), kind),
+          element);
+  }
+
+  // --- what stops at once ----------------------------------------------------------------------------------------
+
+  void judge_damping(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const auto found = element.parameters->values.find("damping");
+    const double damping = found == element.parameters->values.end() ? 0.0 : found->second.number;
+    if (!(damping > 0.0) || is_doubted(element)) return;
+    const std::optional<MatrixXd> rate = rate_of(j);
+    if (!rate) return;
+    const VectorXd mass =
+        VectorXd::Map(system_.inertia().mass().data(), static_cast<Eigen::Index>(system_.inertia().mass().size()));
+    if (mass.size() != rate->cols() || !(mass.minCoeff() > 0.0)) return;
+    const Settings& settings = model_.settings;
+    const double span = settings.adaptive ? settings.interval : std::min(settings.step, settings.interval);
+    const double shortest = std::min(by_sound, far_below_step * span);
+    // Joints and drivers make what moves heavier, never lighter.
+    const double alone = (*rate * mass.cwiseInverse().asDiagonal() * rate->transpose())(0, 0);
+    if (!(1.0 / alone < shortest * damping)) return;
+    const MatrixXd& free = motions();
+    const VectorXd along = (*rate * free).transpose();
+    if (free.cols() == 0 || !(along.norm() > counts_as_motion * rate->norm())) return;
+    const MatrixXd inertia = free.transpose() * mass.asDiagonal() * free;
+    const double moved = 1.0 / along.dot(symmetric_solution(inertia, along));
+    if (!(moved > 0.0 && moved < shortest * damping)) return;
+    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    doubt("doubtful-value",
+          fmt::format("the damping of '{}' is {:.4g} {}, which stops the {:.3g} {} that it works on in {:.2g} s, "
+                      "faster than sound crosses it: check the number and its unit, or hold it by a joint",
+                      element.name, damping, turns ? "N*m*s/rad" : "N*s/m", moved, turns ? "kg*m^2" : "kg",
+                      moved / damping),
+          element);
+  }
+
+  // --- stops -----------------------------------------------------------------------------------------------------
+
+  static double number(const JointElement& element, const char* name) {
+    const auto found = element.parameters->values.find(name);
+    return found == element.parameters->values.end() ? std::nan("") : found->second.number;
+  }
+
+  /// A start far beyond an end, where a stop pushes with all of its stiffness.
+  void judge_ends(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    if (element.ideal_layout.coordinate == Coordinate::none) return;
+    const double lower = number(element, "lower"), upper = number(element, "upper"), here = e_.coordinate[at(j)];
+    const double beyond = std::fmax(lower - here, here - upper);
+    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    const double most = std::max(most_beyond * (upper - lower), least_beyond * (turns ? 1.0 : system_.size()));
+    if (!(std::isfinite(lower) && std::isfinite(upper) && beyond > most)) return;
+    const char* unit = turns ? "rad" : "m";
+    doubt("doubtful-value",
+          fmt::format("'{}' starts at {:.4g} {}, {:.3g} {} beyond its ends of {:.4g} and {:.4g} {}, where it pushes: "
+                      "check its ends and their units, and the start",
+                      element.name, here, unit, beyond, unit, lower, upper, unit),
+          element);
+  }
+
+  bool is_doubted(const JointElement& element) const {
+    return std::ranges::any_of(structure_.doubts, [&](const StructureDoubt& doubt) {
+      return doubt.message.starts_with(fmt::format("the damping of '{}' ", element.name));
+    });
+  }
+
+  const MatrixXd& constraints() {
+    if (constraints_.size() == 0) constraints_ = constraint_matrix(system_.jacobian(), e_);
+    return constraints_;
+  }
+  const MatrixXd& motions() {
+    if (!motions_) {
+      const MatrixXd all = MatrixXd::Identity(system_.layout().nv(), system_.layout().nv());
+      motions_ = system_.layout().nc() > 0 ? null_space(constraints()) : all;
+    }
+    return *motions_;
+  }
+
+  const System& system_;
+  const Model& model_;
+  const Evaluation& e_;
+  Structure& structure_;
+  MatrixXd constraints_;             // once wanted
+  std::optional<MatrixXd> motions_;  // that they leave free
+};
+
+}  // namespace
+
+void doubt_elements(const System& system, const Evaluation& at_start, Structure& structure) {
+  if (system.layout().nv() > Structure::most_examined) return;
+  Elements(system, at_start, structure).judge();
+}
+
+}  // namespace freeplay

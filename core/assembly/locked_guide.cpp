@@ -1,0 +1,208 @@
+#include "assembly/locked_guide.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "assembly/closed_mechanism.h"
+#include "assembly/continuation.h"
+#include "assembly/dead_point.h"
+#include "assembly/left_free.h"
+#include "assembly/row_space.h"
+#include "base/index.h"
+#include "base/text.h"
+
+namespace freeplay {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double second_position = 0.05;  // rad, or of the size of the model
+
+/// Groups of bodies, the last of them ground, that grow together.
+class BodyGroups {
+ public:
+  explicit BodyGroups(std::size_t bodies) : of_(bodies + 1) { std::iota(of_.begin(), of_.end(), std::size_t{0}); }
+  void unite(BodyId a, BodyId b) { of_[root(a)] = root(b); }
+  bool together(BodyId a, BodyId b) const { return root(a) == root(b); }
+
+ private:
+  std::size_t root(BodyId body) const {
+    std::size_t i = body == ground ? of_.size() - 1 : at(body);
+    while (of_[i] != i) i = of_[i];
+    return i;
+  }
+  std::vector<std::size_t> of_;
+};
+
+class Guides {
+ public:
+  Guides(const System& system, const State& start) : mechanism_(system), model_(mechanism_.model()) {
+    mechanism_.stand_at(system, start);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const int row = mechanism_.system.layout().driver_row(d);
+      if (row >= 0) mechanism_.held_row[at(row)] = 0;
+    }
+  }
+
+  /// With all joints of its loop.
+  struct Locked {
+    int guide = 0;
+    std::vector<int> loop;
+  };
+  std::vector<Locked> find() {
+    std::vector<Locked> found = here();
+    if (found.empty() || motions_.cols() == 0) return found;
+    if (!move_on()) return {};
+    const std::vector<Locked> there = here();
+    std::erase_if(found, [&](const Locked& one) { return std::ranges::count(there, one.guide, &Locked::guide) == 0; });
+    return found;
+  }
+  bool moves() const { return motions_.cols() > 0; }
+
+ private:
+  BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+  bool is_guide(int j) const { return model_.joints[at(j)].ideal_layout.coordinate == Coordinate::position; }
+
+  /// Joints with one freedom that no motion moves, and joints with none.
+  bool stands_still(int j) const {
+    const System& system = mechanism_.system;
+    const JointElement& joint = model_.joints[at(j)];
+    const int width = system.layout().body_velocities(), rows = system.layout().rows(j).size;
+    if (joint.is_force || joint.gear >= 0 || rows < width - 1) return false;
+    if (rows == width || motions_.cols() == 0) return true;
+    if (joint.ideal_layout.coordinate == Coordinate::none) return false;
+    double row[12] = {}, bias = 0.0;
+    system.joints().coordinate_row(j, mechanism_.e, row, bias);
+    VectorXd rate = VectorXd::Zero(motions_.cols());
+    double size = 0.0;
+    const BodyId bodies[2] = {body_of(joint.marker_a), body_of(joint.marker_b)};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < width && bodies[k] != ground; ++c) {
+        rate += row[width * k + c] * motions_.row(width * bodies[k] + c).transpose();
+        size = std::hypot(size, row[width * k + c]);
+      }
+    }
+    return rate.norm() <= counts_as_motion * size;
+  }
+
+  std::vector<Locked> here() {
+    const ClosedMechanism::Rows rows = mechanism_.position_rows();
+    const Eigen::Index columns = mechanism_.system.layout().nv();
+    motions_ = rows.matrix.rows() > 0 ? null_space(MatrixXd(rows.matrix)) : MatrixXd::Identity(columns, columns);
+    std::vector<int> still;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (stands_still(j)) still.push_back(j);
+    }
+    std::vector<Locked> found;
+    for (const int j : still) {
+      if (!is_guide(j)) continue;
+      BodyGroups without(model_.bodies.size());
+      for (const int other : still) {
+        if (other != j) without.unite(bodies_of(other).first, bodies_of(other).second);
+      }
+      const auto [a, b] = bodies_of(j);
+      if (!without.together(a, b)) continue;
+      Locked one{j, {}};
+      for (const int other : still) {
+        if (without.together(bodies_of(other).first, a) && without.together(bodies_of(other).second, a))
+          one.loop.push_back(other);
+      }
+      found.push_back(std::move(one));
+    }
+    return found;
+  }
+
+  std::pair<BodyId, BodyId> bodies_of(int j) const {
+    return {body_of(model_.joints[at(j)].marker_a), body_of(model_.joints[at(j)].marker_b)};
+  }
+
+  /// A little along all motions at once.
+  bool move_on() {
+    VectorXd along = VectorXd::Zero(motions_.rows());
+    for (Eigen::Index c = 0; c < motions_.cols(); ++c) {
+      const double share = static_cast<double>(c + 1) * 0.6180339887498949;
+      along += (0.5 + share - std::floor(share)) * motions_.col(c);
+    }
+    const std::vector<double> q(mechanism_.state.q().begin(), mechanism_.state.q().end());
+    for (const double sign : {1.0, -1.0}) {
+      std::vector<double> increment(at(static_cast<int>(along.size())));
+      double most = 0.0;
+      for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
+        increment[at(i)] = along[i];
+        const bool turn = mechanism_.system.coordinates().is_turn(i);
+        most = std::max(most, std::abs(along[i]) / (turn ? 1.0 : mechanism_.system.size()));
+      }
+      for (double& part : increment) part *= sign * second_position / most;
+      mechanism_.system.coordinates().retract(q, increment, mechanism_.state.q());
+      if (mechanism_.holds(mechanism_.converge())) return true;
+      std::ranges::copy(q, mechanism_.state.q().begin());
+    }
+    return false;
+  }
+
+  ClosedMechanism mechanism_;
+  const Model& model_;
+  MatrixXd motions_;
+};
+
+/// Does a driver or a start speed move the bodies that hang together with those of a joint other than by ground?
+bool is_moved(const Model& model, const JointElement& joint) {
+  const auto body_of = [&](int marker) { return model.markers[at(marker)].body; };
+  BodyGroups groups(model.bodies.size());
+  for (const JointElement& other : model.joints) {
+    const BodyId a = body_of(other.marker_a), b = body_of(other.marker_b);
+    if (other.gear < 0 && !other.is_force && a != ground && b != ground) groups.unite(a, b);
+  }
+  const auto ends = [&](const JointElement& one) { return std::pair(body_of(one.marker_a), body_of(one.marker_b)); };
+  const auto together = [&](BodyId body) {
+    const auto [a, b] = ends(joint);
+    return body != ground && ((a != ground && groups.together(body, a)) || (b != ground && groups.together(body, b)));
+  };
+  const auto touches = [&](const JointElement& one) {
+    return one.gear < 0 && (together(ends(one).first) || together(ends(one).second));
+  };
+  for (const Driver& driver : model.drivers) {
+    if (touches(model.joints[at(driver.joint)])) return true;
+  }
+  for (const JointElement& one : model.joints) {
+    if (one.start_speed && one.start_speed->value != 0.0 && touches(one)) return true;
+  }
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    if (has_velocity(model.bodies[at(b)]) && together(b)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void doubt_guides(const System& system, const State& start, Structure& structure) {
+  const Model& model = system.model();
+  const auto is_guide = [](const JointElement& joint) {
+    return !joint.is_force && joint.gear < 0 && joint.ideal_layout.coordinate == Coordinate::position;
+  };
+  if (static_cast<int>(model.bodies.size()) * (model.space == Space::planar ? 3 : 6) > most_followed_velocities) return;
+  if (std::ranges::none_of(model.joints, is_guide)) return;
+  Guides guides(system, start);
+  for (const Guides::Locked& one : guides.find()) {
+    const JointElement& guide = model.joints[at(one.guide)];
+    if (!is_moved(model, guide) || structure.doubts.size() >= Structure::most_doubts) continue;
+    const std::string own = guide.name.substr(guide.name.rfind('.') + 1);
+    std::vector<int> others = one.loop;
+    std::erase(others, one.guide);
+    structure.doubts.push_back(
+        {"locked",
+         fmt::format("joint '{}' cannot move: with {} it closes a loop in which nothing can{}; let it stand on another "
+                     "body, or turn its axis",
+                     guide.name, joint_names(others, model), guides.moves() ? "" : " (the mechanism has no freedom)"),
+         guide.location, std::max(character_count(own), 1)});
+  }
+}
+
+}  // namespace freeplay
