@@ -99,6 +99,14 @@ constexpr abi::FrictionLawTable named_friction_law{
     [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
       const auto& me = NamedFrictionLaw::of(self);
       return me.named(me.table.decide(me.law, in, values, m), m);
+    },
+    [](const void* self, Span<double> start, Span<MemoryReset> resets, Message* m) noexcept {
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.named(me.table.memory(me.law, start, resets, m), m);
+    },
+    [](const void* self, Span<const double> internal, double* energy, Span<double> slopes, Message* m) noexcept {
+      const auto& me = NamedFrictionLaw::of(self);
+      return me.named(me.table.stored(me.law, internal, energy, slopes, m), m);
     }};
 
 CreationFault fault_of(const Component& component, Status status, const Message& message) {
@@ -141,6 +149,18 @@ struct Instances::Server {
   ContactLawRef serve_contact_law(const ParameterBlock& law, const ContactPair& pair, CreationFault& fault) const;
   FrictionLawRef serve_friction_law(const ParameterBlock& law, CreationFault& fault) const;
 
+  /// A pair of surfaces as this program has it: the library of the joint may fill fewer of its fields.
+  ContactPair whole(const ContactPair& given) const {
+    std::size_t size = sizeof(ContactPair);
+    for (const RegisteredLibrary& library : owner.libraries_) {
+      for (const Component& row : library.table->components()) {
+        if (&row == block.component) size = std::min(size, library.table->contact_pair_size());
+      }
+    }
+    ContactPair pair{};
+    std::memcpy(static_cast<void*>(&pair), &given, size);
+    return pair;
+  }
   static const Server& of(const void* self) { return *static_cast<const Server*>(self); }
   abi::ParameterTable table() const;
   void keep_functions() const;
@@ -171,11 +191,19 @@ abi::ParameterTable Instances::Server::table() const {
   table.formula = [](const void* self, const char* name, Formula* out, Message* m) noexcept {
     return abi::guarded(m, [&] { *out = of(self).value(name).formula; });
   };
+  table.points = [](const void* self, const char* name, TablePoints* out, Message* m) noexcept {
+    return abi::guarded(m, [&] {
+      const ParameterPoints* points = of(self).value(name).points.get();
+      *out = points == nullptr
+                 ? TablePoints{}
+                 : TablePoints{{points->x.data(), points->x.size()}, {points->y.data(), points->y.size()}};
+    });
+  };
   table.contact_law = [](const void* self, const char* name, const ContactPair* pair, ContactLawRef* law,
                          Message* m) noexcept {
     return abi::guarded(m, [&] {
       CreationFault fault;
-      *law = of(self).serve_contact_law(of(self).law(name), *pair, fault);
+      *law = of(self).serve_contact_law(of(self).law(name), of(self).whole(*pair), fault);
       if (!fault.id.empty()) pass_on(fault, name);
     });
   };
@@ -224,6 +252,7 @@ void Instances::Server::keep_functions() const {
   for (const auto& [name, value] : block.values) {
     // The deleter holds the owner; there is nothing else to delete.
     if (value.function_owner) owner.objects_.emplace_back(nullptr, [kept = value.function_owner](void*) {});
+    if (value.points) owner.objects_.emplace_back(nullptr, [kept = value.points](void*) {});
   }
 }
 

@@ -6,12 +6,18 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "freeplay/plugin.h"
 
 namespace freeplay {
 
 struct ParameterBlock;
+
+/// Numbers of a list, as y, or points of a table.
+struct ParameterPoints {
+  std::vector<double> x, y;
+};
 
 /// Value of one entry of a parameter table, SI. What was not written holds its default.
 struct ParameterValue {
@@ -21,8 +27,9 @@ struct ParameterValue {
   std::array<double, 3> vector{};
   TimeFunction function;
   Formula formula;
-  std::shared_ptr<const void> function_owner;  ///< keeps what `function` or `formula` points at
-  std::shared_ptr<const ParameterBlock> law;   ///< contact_law, friction_law
+  std::shared_ptr<const ParameterPoints> points;  ///< list, table; null: absent
+  std::shared_ptr<const void> function_owner;     ///< keeps what `function` or `formula` points at
+  std::shared_ptr<const ParameterBlock> law;      ///< contact_law, friction_law
 };
 
 /// Values by the names of the component's table.

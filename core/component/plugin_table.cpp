@@ -13,6 +13,8 @@
 namespace freeplay {
 namespace {
 
+constexpr std::size_t place_of_contact_pair = 3;  // in struct_sizes
+static_assert(struct_sizes[place_of_contact_pair] == sizeof(ContactPair));
 constexpr std::uint32_t most_rows = 10000, most_parameters = 1000;  // beyond is a wild pointer, not a table
 
 // What stands in for functions that came after a library was built.
@@ -77,6 +79,12 @@ abi::FrictionLawTable defaults<abi::FrictionLawTable>() {
     return Status::ok;
   };
   has_no_switches<abi::FrictionLawTable, FrictionState>(table);
+  table.memory = [](const void*, Span<double>, Span<MemoryReset>, Message*) noexcept { return Status::ok; };
+  table.stored = [](const void*, Span<const double>, double* energy, Span<double> slopes, Message*) noexcept {
+    std::fill(slopes.begin(), slopes.end(), 0.0);
+    *energy = 0.0;
+    return Status::ok;
+  };
   return table;
 }
 
@@ -112,6 +120,8 @@ PluginTable::PluginTable(PluginEntry entry, const std::string& library) : librar
   name_ = manifest.name;
   version_ = manifest.version ? manifest.version : "";
   compiler_ = manifest.compiler ? manifest.compiler : "";
+  if (manifest.struct_sizes.size > place_of_contact_pair)
+    contact_pair_size_ = manifest.struct_sizes[place_of_contact_pair];
   const auto* row = reinterpret_cast<const char*>(manifest.components.data);
   for (std::size_t i = 0; i < manifest.components.size; ++i, row += manifest.component_size) {
     copy_row(as_known<Component>(row, manifest.component_size), manifest);
@@ -223,11 +233,15 @@ void PluginTable::check_parameters(const Component& row) const {
     const std::string named = std::string("publishes '") + row.description.name + "' with ";
     if (p.name == nullptr || *p.name == '\0' || p.unit == nullptr) refuse(named + "a parameter without name or unit");
     const std::string parameter = "parameter '" + std::string(p.name) + "' ";
-    if (p.kind > ParameterKind::formula) refuse(named + parameter + "of an unknown kind");
-    if (p.kind == ParameterKind::formula && p.variables == nullptr) refuse(named + parameter + "without variables");
+    if (p.kind > ParameterKind::table) refuse(named + parameter + "of an unknown kind");
+    const bool has_points = p.kind == ParameterKind::list || p.kind == ParameterKind::table;
+    const bool has_variables = p.kind == ParameterKind::formula || p.kind == ParameterKind::table;
+    if (has_variables && p.variables == nullptr) refuse(named + parameter + "without variables");
+    if (has_points && (p.least > p.most || p.most == 0)) refuse(named + parameter + "whose length leaves nothing");
     if (!names.insert(p.name).second) refuse(named + "two parameters called '" + p.name + "'");
     if (p.minimum > p.maximum) refuse(named + parameter + "whose bounds leave nothing");
     const bool has_default = !std::isnan(p.default_value) && p.default_value != optional;
+    if (has_points && has_default) refuse(named + parameter + "that has a default, which only numbers and words have");
     if (!has_default || (p.kind != ParameterKind::number && p.kind != ParameterKind::integer)) continue;
     const auto open = [&](Open end) {
       return (static_cast<std::uint32_t>(p.open) & static_cast<std::uint32_t>(end)) != 0;

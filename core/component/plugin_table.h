@@ -25,6 +25,8 @@ class PluginTable {
   const std::string& name() const { return name_; }
   const std::string& version() const { return version_; }
   const std::string& compiler() const { return compiler_; }
+  /// How many bytes of a ContactPair its joints fill.
+  std::size_t contact_pair_size() const { return contact_pair_size_; }
 
  private:
   void check(const Manifest& manifest, Status status) const;
@@ -35,6 +37,7 @@ class PluginTable {
   [[noreturn]] void refuse(const std::string& why) const;
 
   std::string library_, name_, version_, compiler_;
+  std::size_t contact_pair_size_ = sizeof(ContactPair);
   std::deque<Component> components_, missing_;
   std::deque<std::vector<Parameter>> parameters_;
   std::deque<abi::JointTable> joints_;

@@ -48,6 +48,10 @@ const char* kind_word(ParameterKind kind) {
       return "function";
     case ParameterKind::formula:
       return "formula";
+    case ParameterKind::list:
+      return "list";
+    case ParameterKind::table:
+      return "table";
     case ParameterKind::contact_law:
       return "contact law";
     case ParameterKind::friction_law:
@@ -67,6 +71,12 @@ Json default_json(const Parameter& parameter, const std::vector<std::string>& ch
   return parameter.default_value >= 0.0 && index < choices.size() ? Json(choices[index]) : Json(nullptr);
 }
 
+/// How many numbers of a list or points of a table there may be; null of anything else.
+Json length_json(const Parameter& parameter) {
+  if (parameter.kind != ParameterKind::list && parameter.kind != ParameterKind::table) return nullptr;
+  return {{"minimum", parameter.least}, {"maximum", parameter.most}};
+}
+
 Json parameter_json(const Parameter& parameter, const Registry& registry) {
   const std::vector<std::string> choices = words(parameter.choices);
   Json variables = Json::array();
@@ -82,6 +92,7 @@ Json parameter_json(const Parameter& parameter, const Registry& registry) {
           {"exclusive_maximum", is_open(parameter, Open::maximum)},
           {"choices", choices},
           {"variables", variables},
+          {"length", length_json(parameter)},
           {"summary", parameter.summary}};
 }
 
@@ -158,11 +169,22 @@ Json core_entry(const char* name, const char* kind, const FormatMap& map) {
                           {"exclusive_maximum", false},
                           {"choices", words_in(key.value)},
                           {"variables", Json::array()},
+                          {"length", nullptr},
                           {"summary", key.meaning}});
   }
   return {{"name", name},         {"kind", kind},           {"space", "both"},
           {"source", "built-in"}, {"summary", map.meaning}, {"parameters", parameters},
           {"formula", ""},        {"validity", ""},         {"references", ""}};
+}
+
+/// "2 to 9 numbers", "2 to 9 points over speed [m/s]".
+std::string length_text(const Json& parameter) {
+  const int least = parameter["length"]["minimum"], most = parameter["length"]["maximum"];
+  const std::string count = least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
+  if (parameter["variables"].empty()) return count + " numbers";
+  const Json& x = parameter["variables"][0];
+  const auto name = x["name"].get<std::string>(), unit = x["unit"].get<std::string>();
+  return fmt::format("{} points over {}{}", count, name, unit == "1" ? "" : fmt::format(" [{}]", unit));
 }
 
 std::string number_or_word(const Json& value) {
@@ -207,6 +229,7 @@ std::string range_text(const Json& parameter) {
     if (from) text = (above ? "> " : ">= ") + number_or_word(parameter["minimum"]);
     if (to) text += (from ? ", " : "") + std::string(below ? "< " : "<= ") + number_or_word(parameter["maximum"]);
   }
+  if (!parameter["length"].is_null()) return length_text(parameter) + (text.empty() ? "" : ", each " + text);
   if (!parameter["variables"].empty()) {
     std::vector<std::string> names;
     for (const Json& one : parameter["variables"]) {

@@ -138,9 +138,10 @@ void check_value(const Parameter& p, Findings& findings) {
 /// What is wrong with the variables of a formula.
 std::optional<std::string> variables_fault(const Parameter& p, Span<const Parameter> table) {
   const std::vector<VariableRow> rows = variables_of(p);
-  if (p.kind != ParameterKind::formula)
-    return rows.empty() ? std::nullopt : std::optional<std::string>("is no formula");
-  if (rows.empty() || rows.size() > Formula::most_variables) return fmt::format("has {} variables", rows.size());
+  if (p.kind != ParameterKind::formula && p.kind != ParameterKind::table)
+    return rows.empty() ? std::nullopt : std::optional<std::string>("is neither formula nor table");
+  const std::size_t most = p.kind == ParameterKind::table ? 1 : Formula::most_variables;
+  if (rows.empty() || rows.size() > most) return fmt::format("has {} variables", rows.size());
   std::set<std::string> names;
   for (const VariableRow& row : rows) {
     if (!is_path(row.name) || row.name.find('.') != std::string::npos) return fmt::format("'{}'", row.name);

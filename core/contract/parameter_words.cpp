@@ -1,5 +1,6 @@
 #include "contract/parameter_words.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,19 @@ std::string number_words(double number, const Parameter& p) {
   const std::string_view unit = p.unit;
   const bool plain = unit != "1" && unit.find('|') == std::string_view::npos;
   return fmt::format("{:.6g}{}{}", number, plain ? " " : "", plain ? unit : "");
+}
+
+/// "[1, 2, 3]", "[[0, 1], [2, 3], ... 9 points]", SI.
+std::string points_words(const ParameterPoints& points) {
+  constexpr std::size_t most_shown = 4;
+  const bool table = !points.x.empty();
+  std::string all;
+  for (std::size_t i = 0; i < std::min(points.y.size(), most_shown); ++i) {
+    all += i == 0 ? "" : ", ";
+    all += table ? fmt::format("[{:.6g}, {:.6g}]", points.x[i], points.y[i]) : fmt::format("{:.6g}", points.y[i]);
+  }
+  if (points.y.size() > most_shown) all += fmt::format(", ... {} in all", points.y.size());
+  return "[" + all + "]";
 }
 
 /// Empty where the value was left open.
@@ -38,6 +52,9 @@ std::string value_words(const ParameterValue& value, const Parameter& p) {
       return fmt::format("[{:.6g}, {:.6g}, {:.6g}]", value.vector[0], value.vector[1], value.vector[2]);
     case ParameterKind::function:
       return value.function_owner != nullptr ? "a function of time" : "";
+    case ParameterKind::list:
+    case ParameterKind::table:
+      return value.points == nullptr ? std::string() : points_words(*value.points);
     default:
       return std::isnan(value.number) ? std::string() : number_words(value.number, p);
   }

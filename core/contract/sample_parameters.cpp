@@ -8,6 +8,7 @@
 #include "base/expression_error.h"
 #include "base/unit.h"
 #include "component/instances.h"
+#include "contract/sample_values.h"
 #include "format/parameter_tree.h"
 
 namespace freeplay {
@@ -22,78 +23,15 @@ ComponentKind law_kind(const Parameter& p) {
   return p.kind == ParameterKind::contact_law ? ComponentKind::contact_law : ComponentKind::friction_law;
 }
 
-/// How the numbers of one unit are distinguished: constructors compare lengths or speeds with each other.
-enum class Order { rising, falling, equal };
-
 /// What a block says beyond its defaults.
 struct Plan {
   std::set<std::string> given{};            ///< optional parameters
   std::map<std::string, int> words{};       ///< choices, and words in the place of numbers
   std::map<std::string, double> numbers{};  ///< SI
   std::map<std::string, std::shared_ptr<const ParameterBlock>> laws{};
-  Order order = Order::rising;
-  bool closed = false;  ///< formulas come again after one turn
+  std::map<std::string, std::size_t> lengths{};  ///< of lists and tables
+  SampleOrder order = SampleOrder::rising;
 };
-
-/// f(t) = c (1 + sin(2 t)/2): a function whose three values differ from each other.
-struct SampleFunction {
-  double size;
-};
-Status evaluate_sample(const void* self, double t, TimeValue* out, Message*) noexcept {
-  const double c = static_cast<const SampleFunction*>(self)->size;
-  *out = {c * (1.0 + 0.5 * std::sin(2.0 * t)), c * std::cos(2.0 * t), -2.0 * c * std::sin(2.0 * t)};
-  return Status::ok;
-}
-
-/// f(x, ...) = c x, a formula that rises with its first variable alone; or c (1 + cos(x)/5), a round closed curve as a
-/// distance over the angle.
-struct SampleFormula {
-  double size;
-  bool closed;
-};
-constexpr abi::FormulaTable sample_formula{
-    sizeof(abi::FormulaTable),
-    [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message*) noexcept {
-      const auto& [c, closed] = *static_cast<const SampleFormula*>(self);
-      const double x = variables[0];
-      for (std::size_t i = 0; i < slopes.size; ++i) slopes[i] = i > 0 ? 0.0 : closed ? -0.2 * c * std::sin(x) : c;
-      *value = closed ? c * (1.0 + 0.2 * std::cos(x)) : c * x;
-      return Status::ok;
-    },
-    [](const void*) noexcept { return std::int32_t{0}; },
-    [](const void*, Span<const double>, Span<double>) noexcept {}};
-
-/// A size that occurs in mechanisms [SI].
-double usual_size(const Dimension& d) {
-  const struct {
-    Dimension dimension;
-    double size;
-  } table[] = {{dimension::length, 0.01}, {dimension::pressure, 2e11}, {dimension::velocity, 0.01},
-               {dimension::time, 0.01},   {dimension::stiffness, 1e5}, {dimension::damping, 10.0},
-               {dimension::force, 10.0},  {dimension::torque, 1.0},    {dimension::none, 0.3},
-               {{0.0, -1.0, 0.0}, 1e5}};  // 1/m: a surface that yields by 10 micrometres
-  for (const auto& row : table) {
-    if (row.dimension == d) return row.size;
-  }
-  // Contact stiffness N/m^n: what carries 100 N at 10 micrometres.
-  if (d.kg == 1.0 && d.s == -2.0 && d.m <= 0.5) return 100.0 * std::pow(1e5, 1.0 - d.m);
-  return 1.0;
-}
-
-/// The number nearest to `wish` that lies within the bounds.
-double within(const Parameter& p, double factor, double wish) {
-  const double low = p.minimum * factor, high = p.maximum * factor;
-  const auto opens = [&](Open end) { return p.open == end || p.open == Open::both; };
-  if (std::isfinite(low) && std::isfinite(high)) {
-    const double margin = 0.1 * (high - low);
-    if (wish <= low) return opens(Open::minimum) ? low + margin : low;
-    if (wish >= high) return opens(Open::maximum) ? high - margin : high;
-    return wish;
-  }
-  if (wish < low || (wish == low && opens(Open::minimum))) return low + std::max(std::abs(low), 1.0);
-  if (wish > high || (wish == high && opens(Open::maximum))) return high - std::max(std::abs(high), 1.0);
-  return wish;
-}
 
 class Sampler {
  public:
@@ -116,6 +54,7 @@ class Sampler {
       if (all.words != many.words) add("everything given", all);
       add_words(*few);
       add_ends(*few);
+      add_lengths(all);
     }
     return std::move(found_);
   }
@@ -175,7 +114,7 @@ class Sampler {
       return;
     }
     if (!value.given && is_optional(p)) return;
-    const double tilt = plan.order == Order::equal ? 0.0 : plan.order == Order::rising ? 0.07 : -0.03;
+    const double tilt = plan.order == SampleOrder::equal ? 0.0 : plan.order == SampleOrder::rising ? 0.07 : -0.03;
     const double usual = usual_size(unit.dimension) * (1.0 + tilt * place);
     const bool by_default = !is_required(p) && !is_optional(p);
     const double size = by_default ? p.default_value * unit.factor : usual;
@@ -185,16 +124,22 @@ class Sampler {
       value.vector = {within(p, unit.factor, 0.5 * size), within(p, unit.factor, -0.3 * size),
                       within(p, unit.factor, 0.0)};
     } else if (p.kind == ParameterKind::function) {
-      const auto function = std::make_shared<const SampleFunction>(SampleFunction{size});
-      value.function = {&evaluate_sample, function.get()};
-      value.function_owner = function;
+      set_sample_function(size, value);
     } else if (p.kind == ParameterKind::formula) {
       const std::vector<VariableRow> variables = variables_of(p);
       const Unit first = variables.empty() ? Unit{} : unit_of(variables.front().unit, block).value_or(Unit{});
-      const auto function = std::make_shared<const SampleFormula>(
-          SampleFormula{plan.closed ? size : size / usual_size(first.dimension), plan.closed});
-      value.formula = Formula(sample_formula, function.get());
-      value.function_owner = function;
+      if (unit.dimension == dimension::length && first.dimension == dimension::angle) {
+        set_closed_sample(size, value);
+      } else {
+        set_sample_formula(size / usual_size(first.dimension), value);
+      }
+    } else if (p.kind == ParameterKind::list || p.kind == ParameterKind::table) {
+      const std::vector<VariableRow> variables = variables_of(p);
+      const Unit x = variables.empty() ? Unit{} : unit_of(variables.front().unit, block).value_or(Unit{});
+      const auto length = plan.lengths.find(p.name);
+      value.points =
+          sample_points(p, unit.factor, usual, usual_size(x.dimension), plan.order,
+                        length == plan.lengths.end() ? std::clamp<std::size_t>(3, p.least, p.most) : length->second);
     } else {
       const auto number = plan.numbers.find(p.name);
       value.number = number != plan.numbers.end() ? number->second : by_default ? size : within(p, unit.factor, size);
@@ -301,15 +246,10 @@ class Sampler {
 
   /// The smallest set of optional parameters with which the constructor is content.
   std::optional<Plan> fewest(Plan plan) {
-    // A formula may have to be a closed curve; lengths and speeds that a constructor compares may have to rise or to
-    // fall along the table.
-    for (const bool closed : {false, true}) {
-      plan.closed = closed;
-      for (const Order order : {Order::rising, Order::falling, Order::equal}) {
-        plan.order = order;
-        if (const std::optional<Plan> found = with_more(plan, 3)) return found;
-      }
-      if (std::ranges::none_of(table(), [](const Parameter& p) { return p.kind == ParameterKind::formula; })) break;
+    // Lengths and speeds that a constructor compares may have to rise or to fall along the table.
+    for (const SampleOrder order : {SampleOrder::rising, SampleOrder::falling, SampleOrder::equal}) {
+      plan.order = order;
+      if (const std::optional<Plan> found = with_more(plan, 3)) return found;
     }
     return std::nullopt;
   }
@@ -422,6 +362,20 @@ class Sampler {
       };
       if (std::isfinite(p.minimum) && closed(Open::minimum)) add_end(p.minimum);
       if (std::isfinite(p.maximum) && closed(Open::maximum)) add_end(p.maximum);
+    }
+  }
+
+  /// The shortest and a long form of what has a length.
+  void add_lengths(const Plan& plan) {
+    constexpr std::size_t long_enough = 40;
+    for (const Parameter& p : table()) {
+      const bool given = is_required(p) || plan.given.contains(p.name);
+      if ((p.kind != ParameterKind::list && p.kind != ParameterKind::table) || !given) continue;
+      for (const std::size_t length : {std::size_t{p.least}, std::min<std::size_t>(p.most, long_enough)}) {
+        Plan next = plan;
+        next.lengths[p.name] = length;
+        add("'" + std::string(p.name) + "' has the length " + std::to_string(length), next);
+      }
     }
   }
 

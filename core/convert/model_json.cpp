@@ -139,12 +139,27 @@ class ModelWriter {
         return value.given ? Json("function of time") : Json(nullptr);
       case ParameterKind::formula:
         return value.given ? Json("formula") : Json(nullptr);
+      case ParameterKind::list:
+        return value.points ? list(value.points->y, unit(parameter, block)) : Json(nullptr);
+      case ParameterKind::table:
+        return value.points ? points(parameter, *value.points, block) : Json(nullptr);
       case ParameterKind::number:
       case ParameterKind::integer:
         break;
     }
     if (value.word >= 0) return words_of(parameter).at(at(value.word));
     return std::isfinite(value.number) ? number(value.number, unit(parameter, block)) : Json(nullptr);
+  }
+
+  Json points(const Parameter& parameter, const ParameterPoints& all, const ParameterBlock& block) const {
+    Parameter of_x = parameter;
+    const std::string x_unit = variables_of(parameter).front().unit;
+    of_x.unit = x_unit.c_str();
+    const std::string of_first = unit(of_x, block), of_second = unit(parameter, block);
+    Json json = Json::array();
+    for (std::size_t i = 0; i < all.x.size(); ++i)
+      json.push_back({number(all.x[i], of_first), number(all.y[i], of_second)});
+    return json;
   }
 
   Json tree(const ParameterTree& tree_, const ParameterBlock& block) const {

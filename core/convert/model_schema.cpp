@@ -124,6 +124,10 @@ std::string fallback_of(const Parameter& p) {
   return number ? number_word(p.default_value) : "";
 }
 
+Json array_of(Json items, std::uint32_t least, std::uint32_t most) {
+  return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", most}};
+}
+
 Json leaf_schema(const Parameter& p) {
   const std::vector<std::string> words = words_of(p);
   Json alternatives = Json::array();
@@ -141,6 +145,12 @@ Json leaf_schema(const Parameter& p) {
       break;
     case ParameterKind::vector:
       alternatives.push_back(reference("vector"));
+      break;
+    case ParameterKind::list:
+      alternatives.push_back(array_of(reference("quantity"), p.least, p.most));
+      break;
+    case ParameterKind::table:
+      alternatives.push_back(array_of(array_of(reference("quantity"), 2, 2), p.least, p.most));
       break;
     case ParameterKind::choice:
       break;

@@ -12,6 +12,7 @@
 
 #include "format/arc_keys.h"
 #include "format/parameter_tree.h"
+#include "format/point_parameters.h"
 #include "format/table_variables.h"
 #include "model/table_formula.h"
 #include "model/time_function.h"
@@ -185,6 +186,12 @@ class ParameterCheck {
       case ParameterKind::contact_law:
       case ParameterKind::friction_law:
         return read_law_block(parameter, written, value);
+      case ParameterKind::list:
+        return (value.points = read_list(parameter, unit, written, places_)) != nullptr;
+      case ParameterKind::table: {
+        const Dimension of_x = unit_in_table(variables_of(parameter).front().unit).dimension;
+        return (value.points = read_table(parameter, of_x, unit, written, places_)) != nullptr;
+      }
     }
     return false;
   }

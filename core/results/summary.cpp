@@ -57,9 +57,17 @@ std::string choice(const char* words, int index) {
   return std::string(rest.substr(0, rest.find('|')));
 }
 
+Json points_json(const ParameterPoints& points) {
+  if (points.x.empty()) return points.y;
+  Json all = Json::array();
+  for (std::size_t i = 0; i < points.x.size(); ++i) all.push_back({points.x[i], points.y[i]});
+  return all;
+}
+
 Json parameter_value(const Parameter& parameter, const ParameterValue& value) {
   if (value.word >= 0 && parameter.choices != nullptr) return choice(parameter.choices, value.word);
   if (parameter.kind == ParameterKind::vector) return value.vector;
+  if (value.points) return points_json(*value.points);
   if (parameter.kind == ParameterKind::integer && std::isfinite(value.number)) return std::lround(value.number);
   return json_number(value.number);
 }

@@ -102,13 +102,17 @@ def choice_section(name, definition):
 # --- types ---------------------------------------------------------------------------------------------------------
 
 def limits(parameter):
-    low, high = parameter.get("minimum"), parameter.get("maximum")
-    if parameter.get("variables"):
-        return "formula in " + ", ".join(
-            code(one["name"]) + ("" if one["unit"] == "1" else " [%s]" % one["unit"]) for one in parameter["variables"])
+    low, high, length = parameter.get("minimum"), parameter.get("maximum"), parameter.get("length")
+    variables = ", ".join(code(one["name"]) + ("" if one["unit"] == "1" else " [%s]" % one["unit"])
+                          for one in parameter.get("variables") or [])
+    if variables and not length:
+        return "formula in " + variables
     if parameter.get("choices"):
         return ", ".join(code(word) for word in parameter["choices"])
     words = []
+    if length:
+        count = "%d to %d" % (length["minimum"], length["maximum"])
+        words.append("%s points over %s" % (count, variables) if variables else "%s numbers" % count)
     if low is not None:
         words.append("%s %g" % (">" if parameter.get("exclusive_minimum") else ">=", low))
     if high is not None:

@@ -52,8 +52,17 @@ class ParameterStub {
   mutable ContactPair pair{};             ///< what the joint handed to its contact law
 
   abi::ParameterTable table() const {
-    return {
-        sizeof(abi::ParameterTable), this, number, vector, word, given, function, contact_law, friction_law, formula};
+    return {sizeof(abi::ParameterTable),
+            this,
+            number,
+            vector,
+            word,
+            given,
+            function,
+            contact_law,
+            friction_law,
+            formula,
+            points};
   }
 
  private:
@@ -106,6 +115,7 @@ class ParameterStub {
       if (found != self(s).formulas.end()) *out = found->second;
     });
   }
+  static Status points(const void*, const char*, TablePoints*, Message*) noexcept { return Status::failed; }
   static Status contact_law(const void* s, const char* name, const ContactPair* pair, ContactLawRef* law,
                             Message* m) noexcept {
     return abi::guarded(m, [&] {

@@ -12,13 +12,48 @@ struct Material {
   double poisson_ratio;   ///< [1]
 };
 
-/// A journal inside a bearing (internal contact). What the model file does not give is NaN.
+/// What one of two surfaces is like where they touch.
+enum class SurfaceShape : std::uint32_t {
+  unknown,   ///< a joint that does not say: round where its radius is known
+  cylinder,  ///< of its radius: the bore of a bearing, a pin as the journal
+  sphere,    ///< of its radius: the socket as the bearing, a ball as the journal
+  plane,     ///< flat: it has no radius, which is not one that is not known
+  corner     ///< where two faces meet: it has no radius either
+};
+
+/// Two surfaces that may touch, as a journal inside a bearing, or before a wall, which then is the bearing. What the
+/// model file does not give is NaN.
 struct ContactPair {
-  double bearing_radius;    ///< [m]
-  double journal_radius;    ///< [m]
-  double radial_clearance;  ///< bearing minus journal radius [m]
-  double length;            ///< axial length of the contact [m]
+  double bearing_radius;    ///< of a surface that is hollow [m]
+  double journal_radius;    ///< of a surface that bulges [m]
+  double radial_clearance;  ///< bearing minus journal radius; before a wall the play to one side [m]
+  double length;            ///< axial length of the contact: across the plane of a planar model [m]
   Material bearing, journal;
+  // Appended.
+  SurfaceShape bearing_shape = SurfaceShape::unknown, journal_shape = SurfaceShape::unknown;
+  double face_length = std::numeric_limits<double>::quiet_NaN();  ///< of a flat face along the way it slides [m]
+
+  /// 1/R = 1/R_journal - 1/R_bearing [1/m], where a plane counts as 0: of two round surfaces, or of a round one on a
+  /// plane. NaN where a radius is not known, at a corner and between two planes.
+  double relative_curvature() const {
+    if (!is_round(journal_shape, journal_radius)) return std::numeric_limits<double>::quiet_NaN();
+    if (bearing_shape == SurfaceShape::plane) return 1.0 / journal_radius;
+    if (!is_round(bearing_shape, bearing_radius)) return std::numeric_limits<double>::quiet_NaN();
+    return radial_clearance / (bearing_radius * journal_radius);
+  }
+  /// Whether one surface follows the other, so that they are near each other over a large part of both: a journal in a
+  /// bearing, a face on a wall.
+  bool conforming() const {
+    if (bearing_shape == SurfaceShape::plane) return journal_shape == SurfaceShape::plane;
+    return is_round(bearing_shape, bearing_radius) && is_round(journal_shape, journal_radius);
+  }
+
+ private:
+  static bool is_round(SurfaceShape shape, double radius) {
+    const bool is_known = radius == radius;
+    return shape == SurfaceShape::cylinder || shape == SurfaceShape::sphere ||
+           (shape == SurfaceShape::unknown && is_known);
+  }
 };
 
 /// Only evaluated for penetration > 0; the joint decides when contact exists.

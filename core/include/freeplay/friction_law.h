@@ -19,6 +19,12 @@ struct FrictionForce {
   double d_slip;      ///< partial derivative with respect to slip_speed [N s/m]
 };
 
+/// When an internal variable goes back to the value that it starts with.
+enum class MemoryReset : std::uint32_t {
+  each_contact,  ///< when its contact ends, so that each one begins with it: as the deflection of bristles
+  never          ///< it stays what it is while nothing touches, and the next contact goes on from there: as wear
+};
+
 /// A friction law. Laws with memory declare internal variables and give their rates; the owning joint keeps
 /// them in its own z, so that they roll back with the state. Immutable after construction.
 class FrictionLaw {
@@ -33,6 +39,17 @@ class FrictionLaw {
   /// The same where kinks do not stand at fixed speeds: how many functions decide() fills, which pass zero there.
   virtual std::int32_t switches() const { return 0; }
   virtual void decide(const FrictionState& /*state*/, Span<double> /*values*/) const {}
+  /// Laws with memory: the values that the internal variables start with, zero as they come, and when they go back to
+  /// them, `each_contact` as they come; internal_variables() entries each. Joints in space, where memory is a vector
+  /// along the surface, take no other values.
+  virtual void memory(Span<double> /*start*/, Span<MemoryReset> /*resets*/) const {}
+  /// Laws with memory: the energy that it stores and gives back [J], and in `slopes`, internal_variables() entries, its
+  /// partial derivatives. Then what is lost at an instant is minus the power of the force and the rate of that. Zero,
+  /// as it is here: what the force takes is lost at once.
+  virtual double stored(Span<const double> /*internal*/, Span<double> slopes) const {
+    for (double& slope : slopes) slope = 0.0;
+    return 0.0;
+  }
 };
 
 namespace abi {
@@ -44,6 +61,9 @@ struct FrictionLawTable {
   Status (*kinks)(const void* self, Span<const double>* speeds, Message*) noexcept;
   Status (*switches)(const void* self, std::int32_t* count, Message*) noexcept;
   Status (*decide)(const void* self, const FrictionState*, Span<double> values, Message*) noexcept;
+  Status (*memory)(const void* self, Span<double> start, Span<MemoryReset> resets, Message*) noexcept;
+  Status (*stored)(const void* self, Span<const double> internal, double* energy, Span<double> slopes,
+                   Message*) noexcept;
 };
 
 template <class Law>
@@ -64,6 +84,12 @@ inline constexpr FrictionLawTable friction_law_table{
     },
     [](const void* self, const FrictionState* in, Span<double> values, Message* m) noexcept {
       return guarded(m, [&] { static_cast<const Law*>(self)->decide(*in, values); });
+    },
+    [](const void* self, Span<double> start, Span<MemoryReset> resets, Message* m) noexcept {
+      return guarded(m, [&] { static_cast<const Law*>(self)->memory(start, resets); });
+    },
+    [](const void* self, Span<const double> internal, double* energy, Span<double> slopes, Message* m) noexcept {
+      return guarded(m, [&] { *energy = static_cast<const Law*>(self)->stored(internal, slopes); });
     }};
 
 template <class Law>
@@ -106,6 +132,16 @@ class FrictionLawRef {
   void decide(const FrictionState& state, Span<double> values) const {
     Message message;
     abi::require(table_->decide(self_, &state, values, &message), message);
+  }
+  void memory(Span<double> start, Span<MemoryReset> resets) const {
+    Message message;
+    abi::require(table_->memory(self_, start, resets, &message), message);
+  }
+  double stored(Span<const double> internal, Span<double> slopes) const {
+    double energy = 0.0;
+    Message message;
+    abi::require(table_->stored(self_, internal, &energy, slopes, &message), message);
+    return energy;
   }
 
  private:

@@ -38,7 +38,9 @@ enum class ParameterKind : std::uint32_t {
   function,
   contact_law,
   friction_law,
-  formula
+  formula,
+  list,  ///< numbers of one unit
+  table  ///< points (x, y) of rising x
 };
 
 /// Which ends of a parameter's range do not belong to it.
@@ -51,7 +53,8 @@ enum class Open : std::uint32_t { none = 0, minimum = 1, maximum = 2, both = 3 }
 /// the table: "N/m^exponent"; "kind: N/m | N*m/rad" has a unit for each word of the choice `kind`. A default of
 /// `required` or `optional` applies to every kind; for a choice any other default is the index of the word; for a
 /// law, `preferred` of that kind is used when it is absent and not required. Default and bounds are in `unit`; those
-/// of a vector hold for each of its numbers.
+/// of a vector or a list hold for each of its numbers, those of a table for each y. A list or a table is `required` or
+/// `optional`.
 struct Parameter {
   const char* name;
   ParameterKind kind = ParameterKind::number;
@@ -63,8 +66,16 @@ struct Parameter {
   const char* choices = nullptr;  ///< words separated by '|'; of a number: words accepted in its place
   const char* summary = "";       ///< one sentence for the manual
   // Appended.
-  /// Of a formula: its variables and their units, "delta: m; rate: m/s", at most Formula::most_variables.
+  /// Of a formula: its variables and their units, "delta: m; rate: m/s", at most Formula::most_variables. Of a table:
+  /// its x and the unit of that, "speed: m/s".
   const char* variables = nullptr;
+  /// How many numbers a list or points a table may have.
+  std::uint32_t least = 1, most = 1000;
+};
+
+/// Points of a table, SI: x rises, y has as many numbers. Empty: it is optional and was not given.
+struct TablePoints {
+  Span<const double> x, y;
 };
 
 /// A function of time and its exact first and second derivative.
@@ -125,11 +136,17 @@ class FrictionLawRef;
 class BadParameter : public std::exception {
  public:
   BadParameter(const char* path, const char* id, std::string text) : path_(path), id_(id), text_(std::move(text)) {}
+  /// Number `index`, from 0, of a list, or that point of a table.
+  BadParameter(const char* path, std::size_t index, const char* id, std::string text)
+      : BadParameter(path, id, std::move(text)) {
+    of_item_ = std::string(path) + "." + std::to_string(index);
+  }
   const char* what() const noexcept override { return text_.c_str(); }
-  const char* path() const { return path_; }
+  const char* path() const { return of_item_.empty() ? path_ : of_item_.c_str(); }
   const char* id() const { return id_; }
 
  private:
+  std::string of_item_;
   const char* path_;
   const char* id_;
   std::string text_;
@@ -150,6 +167,8 @@ struct ParameterTable {
   Status (*friction_law)(const void* self, const char* name, FrictionLawRef*, Message*) noexcept;
   // Appended.
   Status (*formula)(const void* self, const char* name, Formula*, Message*) noexcept;
+  /// Of a list: its numbers in `y`, and nothing in `x`.
+  Status (*points)(const void* self, const char* name, TablePoints*, Message*) noexcept;
 };
 
 inline void copy_text(char* to, std::size_t capacity, const char* from) noexcept {
@@ -227,6 +246,9 @@ class Parameters {
 
   TimeFunction function(const char* name) const { return read<TimeFunction>(table_->function, name); }
   Formula formula(const char* name) const { return read<Formula>(table_->formula, name); }
+  /// Numbers of a list and points of a table. The host keeps them as long as the component lives: nothing is copied.
+  Span<const double> list(const char* name) const { return read<TablePoints>(table_->points, name).y; }
+  TablePoints table(const char* name) const { return read<TablePoints>(table_->points, name); }
 
   /// Creates the law named in the sub-block `name`; the model owns it and outlives the caller.
   ContactLawRef contact_law(const char* name, const ContactPair& pair) const;

@@ -1,5 +1,6 @@
 #include "component/instances.h"
 
+#include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,60 @@ TEST(Instances, NameAPluginInItsOwnFailure) {
   EXPECT_FALSE(fault.bad_parameter);
   EXPECT_EQ(fault.id, "plugin-failed");
   EXPECT_NE(fault.text.find("nonsense"), std::string::npos);
+}
+
+double seen_face_length = 0.0;
+SurfaceShape seen_shape{};
+
+class Looking final : public ContactLaw {
+ public:
+  Looking(const Parameters&, const ContactPair& pair) {
+    seen_face_length = pair.face_length;
+    seen_shape = pair.bearing_shape;
+  }
+  ContactForce evaluate(const ContactState&) const override { return {}; }
+};
+class AtWall final : public Joint {
+ public:
+  explicit AtWall(const Parameters& p) {
+    ContactPair pair{1.0, 2.0, 3.0, 4.0, {5.0, 6.0}, {7.0, 8.0}};
+    pair.bearing_shape = SurfaceShape::plane;
+    pair.face_length = 9.0;
+    p.contact_law("law", pair);
+  }
+  void declare(JointLayout&) const override {}
+};
+
+// A joint of a library that was built when a pair had fewer fields fills no others: what comes after it is not its.
+TEST(Instances, GiveALawTheFieldsOfAPairThatTheJointsLibraryKnows) {
+  static Component rows[] = {joint<AtWall>({.name = "at-wall"}), contact_law<Looking>({.name = "looking"})};
+  const auto look = [](PluginEntry entry) {
+    Registry registry;
+    registry.add(entry, "lib.so");
+    Instances instances;
+    instances.keep(registry.libraries().front());
+    auto law = std::make_shared<ParameterBlock>();
+    law->component = registry.find(ComponentKind::contact_law, "looking");
+    ParameterBlock wall;
+    wall.component = registry.find(ComponentKind::joint, "at-wall");
+    wall.values["law"].law = law;
+    CreationFault fault;
+    instances.create_joint(wall, Space::planar, fault);
+    EXPECT_EQ(fault.text, "");
+  };
+  look([](const Host* host, Manifest* manifest) noexcept { return publish(*host, *manifest, "new", "1", rows); });
+  EXPECT_EQ(seen_shape, SurfaceShape::plane);
+  EXPECT_EQ(seen_face_length, 9.0);
+  look([](const Host* host, Manifest* manifest) noexcept {
+    static std::vector<std::uint32_t> sizes;
+    const Status status = publish(*host, *manifest, "old", "1", rows);
+    sizes.assign(manifest->struct_sizes.begin(), manifest->struct_sizes.end());
+    sizes[3] = 64;  // of the first release
+    manifest->struct_sizes = {sizes.data(), sizes.size()};
+    return status;
+  });
+  EXPECT_EQ(seen_shape, SurfaceShape::unknown);
+  EXPECT_TRUE(std::isnan(seen_face_length));
 }
 
 TEST(Instances, KeepTheFunctionsOfTimeAlive) {

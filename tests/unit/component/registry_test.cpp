@@ -1,5 +1,7 @@
 #include "component/registry.h"
 
+#include <cstddef>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -135,6 +137,67 @@ TEST(Registry, KeepsTypesFromTakingWordsThatAreTaken) {
   EXPECT_THAT(claim([](Description& d) { d.name = "gear"; }), HasSubstr("the model file has a meaning for"));
   static constexpr Parameter use[] = {{.name = "use.more"}};
   EXPECT_THAT(claim([](Description& d) { d.parameters = use; }), HasSubstr("the key 'use'"));
+}
+
+// A law with one parameter.
+std::string refusal_of(const Parameter& parameter) {
+  static Parameter row;
+  row = parameter;
+  Registry registry;
+  try {
+    registry.add(
+        [](const Host* host, Manifest* manifest) noexcept {
+          static Component law;
+          law = friction_law<toy::Slippery>({.name = "measured", .parameters = {&row, 1}});
+          return publish(*host, *manifest, "measured", "1", {&law, 1});
+        },
+        "measured.so");
+  } catch (const Error& error) {
+    return error.message();
+  }
+  return "";
+}
+
+// What a law built before them says of its memory: nothing.
+TEST(Registry, StandsInForFunctionsThatCameAfterALaw) {
+  static abi::FrictionLawTable table = abi::friction_law_table<toy::Slippery>;
+  table.size = offsetof(abi::FrictionLawTable, memory);
+  table.memory = nullptr;
+  table.stored = nullptr;
+  Registry registry;
+  registry.add(
+      [](const Host* host, Manifest* manifest) noexcept {
+        static Component law;
+        law = friction_law<toy::Slippery>({.name = "older"});
+        law.table = &table;
+        return publish(*host, *manifest, "older", "1", {&law, 1});
+      },
+      "older.so");
+  const Component& older = *registry.find(ComponentKind::friction_law, "older");
+  const FrictionLawRef law(*static_cast<const abi::FrictionLawTable*>(older.table), nullptr);
+  double start[] = {0.0, 0.0}, slopes[] = {1.0, 1.0};
+  MemoryReset resets[] = {MemoryReset::each_contact, MemoryReset::each_contact};
+  law.memory(start, resets);
+  EXPECT_EQ(start[0], 0.0);
+  EXPECT_EQ(resets[1], MemoryReset::each_contact);
+  EXPECT_EQ(law.stored(start, slopes), 0.0);
+  EXPECT_EQ(slopes[1], 0.0);
+}
+
+TEST(Registry, RefusesListsAndTablesThatNothingCanFill) {
+  using testing::HasSubstr;
+  const auto list = [](double fallback, std::uint32_t least, std::uint32_t most) {
+    return refusal_of(
+        {.name = "speeds", .kind = ParameterKind::list, .default_value = fallback, .least = least, .most = most});
+  };
+  EXPECT_EQ(list(required, 1, 3), "");
+  EXPECT_EQ(list(optional, 0, 1), "");
+  EXPECT_THAT(list(0.5, 1, 3), HasSubstr("parameter 'speeds' that has a default"));
+  EXPECT_THAT(list(required, 4, 3), HasSubstr("parameter 'speeds' whose length leaves nothing"));
+  EXPECT_THAT(list(required, 0, 0), HasSubstr("whose length leaves nothing"));
+  EXPECT_THAT(refusal_of({.name = "curve", .kind = ParameterKind::table}), HasSubstr("'curve' without variables"));
+  EXPECT_EQ(refusal_of({.name = "curve", .kind = ParameterKind::table, .variables = "speed: m/s"}), "");
+  EXPECT_THAT(refusal_of({.name = "curve", .kind = static_cast<ParameterKind>(10)}), HasSubstr("of an unknown kind"));
 }
 
 TEST(Registry, TakesRowsOfTheFirstReleaseAndLongerOnes) {
