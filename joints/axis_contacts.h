@@ -36,6 +36,8 @@ struct EndContact : EndPlace<T> {
 struct EndLaws {
   ContactLawRef normal;
   static std::size_t memory() { return 0; }
+  static double start_of(std::size_t) { return 0.0; }
+  static bool forgets(std::size_t) { return true; }
   std::int32_t count_kinks() const { return normal.switches(); }
   void write_kinks(const Approach& gap, double, const JointInput& in, Span<double> g) const {
     normal.decide({gap.penetration, gap.rate, in.history[approach_speed]}, g);

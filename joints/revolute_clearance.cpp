@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "freeplay/kit/contact_memory.h"
 #include "freeplay/kit/contact_phase.h"
 #include "freeplay/kit/friction_slopes.h"
 #include "freeplay/kit/planar_marker.h"
@@ -63,6 +64,7 @@ class RevoluteClearance final : public Joint {
  public:
   explicit RevoluteClearance(const Parameters& p) : radii_(read_radii(p)), start_(p) {
     ContactPair pair{radii_.bearing, radii_.journal, radii_.clearance, p.number("clearance.length"), {}, {}};
+    pair.bearing_shape = pair.journal_shape = SurfaceShape::cylinder;
     read_materials(p, pair);
     surfaces_ = Surfaces(pair);
     contact_law_ = p.contact_law("clearance.contact", pair);
@@ -71,6 +73,7 @@ class RevoluteClearance final : public Joint {
     if (internal_variables_ > static_cast<int>(most_internal_variables))
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
+    memory_ = MemoryRules<most_internal_variables>(friction_law_);
     require_radii(radii_, friction_law_);
     if (p.given("clearance.axial_clearance"))
       throw BadParameter("clearance.axial_clearance", "type-space", "only a spatial model has play along the axis");
@@ -112,11 +115,12 @@ class RevoluteClearance final : public Joint {
     out.wrench_b[5] = arm_b(gap) * f.friction.tangential;
     out.potential = f.normal.potential;
     out.potential_rate = storing_power(contact_law_, gap, f.normal);
+    if (internal_variables_ > 0) add_stored(in, out);
     if (!out.derivatives.empty()) differentiate(in, gap, f, out.derivatives);
   }
 
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
-    std::fill(internal.begin(), internal.end(), 0.0);
+    std::copy_n(memory_.start, internal.size, internal.begin());
     start(in.t, Gap(in, radii_), history);
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
@@ -139,7 +143,7 @@ class RevoluteClearance final : public Joint {
       }
     } else {
       tell_end(in, gap, history, fields);
-      std::fill(internal.begin(), internal.end(), 0.0);
+      forget(in, internal);
     }
     fields[1] = gap.slip;
     fields[2] = std::atan2(gap.e.y(), gap.e.x());
@@ -217,6 +221,19 @@ class RevoluteClearance final : public Joint {
                        0.5 * dt * dt * length({acc.b[0] - acc.a[0], acc.b[1] - acc.a[1]});
     const double left = radii_.clearance - way;
     return !(left > 0.0 && (position(*in.b) - position(*in.a)).squaredNorm() < left * left);
+  }
+  void add_stored(const JointInput& in, JointForces& out) const {
+    double slopes[most_internal_variables];
+    out.potential += friction_law_.stored(in.internal, {slopes, in.internal.size});
+    for (std::size_t k = 0; k < in.internal.size; ++k) out.potential_rate += slopes[k] * out.internal_rate[k];
+  }
+  /// The contact ends: what its memory stored is lost, and what it forgets is at its start again.
+  void forget(const JointInput& in, Span<double> internal) const {
+    double unused[most_internal_variables];
+    if (in.dissipated != nullptr && internal.size > 0)
+      *in.dissipated += friction_law_.stored(internal, {unused, internal.size});
+    for (std::size_t k = 0; k < internal.size; ++k)
+      if (memory_.forgets(k)) internal[k] = memory_.start[k];
   }
   double radius_a() const { return radii_.known() ? radii_.bearing : 0.0; }
   double radius_b() const { return radii_.known() ? radii_.journal : 0.0; }
@@ -321,6 +338,7 @@ class RevoluteClearance final : public Joint {
   ContactLawRef contact_law_;
   FrictionLawRef friction_law_;
   int internal_variables_ = 0;
+  MemoryRules<most_internal_variables> memory_;
   Start start_;
 };
 

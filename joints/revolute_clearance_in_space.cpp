@@ -32,7 +32,7 @@ class PinInSpace final : public Joint {
  public:
   static constexpr std::size_t contacts_kept = way == Kept::by_shoulders ? places : std::size_t{lower_end} + 1;
 
-  explicit PinInSpace(const Parameters& p) : play_(p, p.number("clearance.length")), tilt_(p) {
+  explicit PinInSpace(const Parameters& p) : play_(p, SurfaceShape::cylinder, p.number("clearance.length")), tilt_(p) {
     const double length = p.number("clearance.length");
     if (std::isnan(length))
       throw BadParameter("clearance", "missing-key", "a bearing in a spatial model needs its 'length'");

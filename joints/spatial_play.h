@@ -35,8 +35,14 @@ struct SpatialLaws {
     if (law_variables > most_law_variables)
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
+    if (!MemoryRules<most_law_variables>(friction).is_deflection())
+      throw BadParameter("clearance.friction", "out-of-range",
+                         "in space the memory of friction is a vector along the surface: a law whose memory does not "
+                         "begin at zero, or outlives a contact, is for joints of the plane");
     slides = sized && !is_inert(friction);
   }
+  static double start_of(std::size_t) { return 0.0; }
+  static bool forgets(std::size_t) { return true; }
   /// Of one contact: where its laws have kinks. Without sliding the law of friction is not asked.
   std::int32_t count_kinks() const { return slides ? play::count_kinks(normal, friction) : normal.switches(); }
   void write_kinks(const Approach& gap, double slip, const JointInput& in, Span<double> g) const {
@@ -92,7 +98,7 @@ struct SpatialLaws {
 /// A pin or a ball: its radii, too, and its start. Throws BadParameter.
 struct SpatialPlay : SpatialLaws {
   /// `length`: of the bearing [m], NaN without one.
-  SpatialPlay(const Parameters& p, double length) : SpatialPlay(p, read_radii(p), length) {}
+  SpatialPlay(const Parameters& p, SurfaceShape shape, double length) : SpatialPlay(p, read_radii(p), shape, length) {}
   double radius_a() const { return radii.known() ? radii.bearing : 0.0; }
   double radius_b() const { return radii.known() ? radii.journal : 0.0; }
 
@@ -101,13 +107,15 @@ struct SpatialPlay : SpatialLaws {
   Start start;
 
  private:
-  SpatialPlay(const Parameters& p, const Radii& r, double length) : SpatialPlay(p, r, pair_of(p, r, length)) {}
+  SpatialPlay(const Parameters& p, const Radii& r, SurfaceShape shape, double length)
+      : SpatialPlay(p, r, pair_of(p, r, shape, length)) {}
   SpatialPlay(const Parameters& p, const Radii& r, const ContactPair& pair)
       : SpatialLaws(p, pair, r.known()), radii(r), surfaces(pair), start(p) {
     require_radii(radii, friction);
   }
-  static ContactPair pair_of(const Parameters& p, const Radii& r, double length) {
+  static ContactPair pair_of(const Parameters& p, const Radii& r, SurfaceShape shape, double length) {
     ContactPair pair{r.bearing, r.journal, r.clearance, length, {}, {}};
+    pair.bearing_shape = pair.journal_shape = shape;
     read_materials(p, pair);
     return pair;
   }

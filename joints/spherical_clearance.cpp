@@ -28,7 +28,7 @@ constexpr Event ball_events[] = {{"contact_begin", Crossing::rising, 1, event_fi
 /// no friction. Flores, Ambrosio, Claro and Lankarani 2008.
 class SphericalClearance final : public Joint {
  public:
-  explicit SphericalClearance(const Parameters& p) : play_(p, not_a_number) {}
+  explicit SphericalClearance(const Parameters& p) : play_(p, SurfaceShape::sphere, not_a_number) {}
 
   void declare(JointLayout& layout) const override {
     layout.time_scale = unbounded;

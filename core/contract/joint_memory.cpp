@@ -52,6 +52,26 @@ void check_rollback(const JointProbe& probe, const JointProbe& twin, RandomNumbe
                   [] { return std::string("a repeated begin_step() prepares another history"); });
 }
 
+/// What a joint that gives potential_rate stores may jump only by what it says that it dissipated.
+void check_history_loss(const JointProbe& probe, RandomNumbers random, Findings& findings) {
+  constexpr int around = 150;
+  const ClosedPath path(probe, random);
+  const double dt = path.period() / around;
+  JointWalk walk(probe, probe.start(path.at(0.0), 0.0));
+  double largest = 0.0;
+  for (int i = 0; i < 2 * around; ++i) {
+    walk.step(path.at((i + 1) * dt), path.acceleration(i * dt), dt);
+    const ProbedForces before = probe.forces(walk.tried()), after = probe.forces(walk.now());
+    if (std::isnan(before.potential_rate) || std::isnan(after.potential_rate)) return;
+    largest = std::max({largest, std::abs(before.potential), std::abs(after.potential)});
+    const double fell = before.potential - after.potential, said = walk.now().lost - walk.tried().lost;
+    findings.expect("history-loss", std::abs(fell - said) <= 1e-9 * largest, [&] {
+      return fmt::format("events and commit() take {:.6g} J out of what is stored and say {:.6g} J, {}", fell, said,
+                         words_of(walk.now()));
+    });
+  }
+}
+
 /// Event functions of position alone: their rates against differences along the present twists.
 void check_event_rates(const JointProbe& probe, const JointMoment& moment, Findings& findings) {
   const ProbedEvents here = probe.events(moment);
@@ -130,6 +150,7 @@ void check_memory(const JointProbe& probe, const JointProbe& twin, const std::ve
     if (probe.layout().events.size > 0) check_event_rates(probe, here, findings);
   }
   check_rollback(probe, twin, random, findings);
+  if (probe.layout().forces != 0 && probe.layout().history > 0) check_history_loss(probe, random, findings);
 }
 
 }  // namespace freeplay

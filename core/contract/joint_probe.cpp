@@ -58,6 +58,7 @@ struct JointProbe::Fed {
   const JointMoment& moment;
   MarkerPair markers;
   GuardedNumbers z, h;
+  double lost = 0.0;
   JointInput in{};
 };
 
@@ -276,8 +277,13 @@ void JointProbe::begin_step(const JointMoment& accepted, const Twelve& accelerat
   trial.h = h.values();
 }
 
+void JointProbe::add_loss(const char* function, const Fed& fed, JointMoment& moment) const {
+  if (expect_finite(function, fed, {&fed.lost, 1})) moment.lost += fed.lost;
+}
+
 std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
   Fed fed(*this, moment);
+  fed.in.dissipated = &fed.lost;
   GuardedNumbers z(moment.z), h(moment.h);
   GuardedNumbers fields(layout_.events[how_many(index)].fields.size, std::numeric_limits<double>::quiet_NaN());
   if (!run("on_event", &moment,
@@ -286,6 +292,7 @@ std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
   }
   watch("on_event", fed, {&z, &h});
   watch("on_event", fed, {&fields}, true);
+  add_loss("on_event", fed, moment);
   moment.z = z.values();
   moment.h = h.values();
   return fields.values();
@@ -293,9 +300,11 @@ std::vector<double> JointProbe::on_event(int index, JointMoment& moment) const {
 
 void JointProbe::commit(JointMoment& moment) const {
   Fed fed(*this, moment);
+  fed.in.dissipated = &fed.lost;
   GuardedNumbers h(moment.h), lambda(how_many(layout_.constraint_rows), 1.0);
   if (!run("commit", &moment, [&](Message& m) { return joint_.commit(fed.in, lambda.span(), h.span(), m); })) return;
   watch("commit", fed, {&h, &lambda});
+  add_loss("commit", fed, moment);
   moment.h = h.values();
 }
 

@@ -23,6 +23,7 @@ struct JointMoment {
   std::vector<double> z, h;
   double per_contact = 0.0;                                     ///< JointInput::per_contact
   const double *mobility = nullptr, *whole_mobility = nullptr;  ///< of on_event()
+  double lost = 0.0;                                            ///< sum of what on_event() and commit() dissipated [J]
 };
 
 struct ProbedRows {
@@ -88,6 +89,7 @@ class JointProbe {
   bool watch(const char* function, const Fed& fed, std::initializer_list<const GuardedNumbers*> written,
              bool nan_allowed = false) const;
   bool expect_finite(const char* function, const Fed& fed, std::span<const double> numbers) const;
+  void add_loss(const char* function, const Fed& fed, JointMoment& moment) const;
   void expect_fence(const char* function, bool intact, const JointMoment& moment) const;
 
   JointRef joint_;

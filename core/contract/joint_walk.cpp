@@ -13,6 +13,7 @@ void JointWalk::step(const MarkerPair& next, const Twelve& acceleration, double 
   trial.t += dt;
   trial.markers = next;
   advance_internal(probe_, trial, dt);
+  tried_ = trial;
   handle_events(trial);
   probe_.commit(trial);
   if (probe_.layout().coordinate != Coordinate::none) trial.coordinate = probe_.coordinate(trial).value;

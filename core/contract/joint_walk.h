@@ -16,12 +16,14 @@ class JointWalk {
   void step(const MarkerPair& next, const Twelve& acceleration, double dt);
 
   const JointMoment& now() const { return now_; }
+  /// The end of the last step before its events were passed on and it was accepted.
+  const JointMoment& tried() const { return tried_; }
 
  private:
   void handle_events(JointMoment& trial) const;
 
   const JointProbe& probe_;
-  JointMoment now_;
+  JointMoment now_, tried_;
 };
 
 /// A closed relative motion of the markers in the plane, once around in `period`. A joint with play is led through

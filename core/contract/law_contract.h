@@ -37,6 +37,8 @@ struct FrictionLawSubject {
 ///   unloaded                no normal force, no friction
 ///   derivatives             against differences
 ///   passive                 a cycle of slip to and fro takes no energy out of the contact
+///   memory                  start values and resets of internal variables
+///   stored-energy           its slopes, against differences; zero at the start values
 ///   no-hidden-state, same-twin, answers, finite, stays-in-span, allocation
 Findings check_friction_law(const FrictionLawSubject& subject, const Conditions& conditions);
 

@@ -111,6 +111,9 @@ constexpr Rule rules[] = {
      "After history and internal variables are put back, the joint repeats itself bit for bit, also after an attempt "
      "that "
      "was given up. Look for numbers that are kept in members."},
+    {"history-loss", joints,
+     "Where apply() fills `potential_rate`, what on_event() and commit() change takes as much out of `potential` as "
+     "they add to JointInput::dissipated."},
     {"step-limit", joints, "step_limit() gives a time above zero."},
     {"free-distance", joints,
      "Wherever the markers move within free_distance(), turns counted by free_levers() where the joint declares "
@@ -198,6 +201,10 @@ constexpr Rule rules[] = {
     {"unloaded", friction_laws, "Without a normal force there is no friction."},
     {"derivatives", friction_laws, "d_normal and d_slip agree with differences of the tangential force."},
     {"passive", friction_laws, "Slip to and fro takes no energy out of the contact."},
+    {"memory", friction_laws, "Start values of internal variables are finite numbers, and resets are known ones."},
+    {"stored-energy", friction_laws,
+     "stored() is zero at the start values, its slopes agree with differences, and it depends on no variable that is "
+     "never reset: what a contact stored is lost when it ends."},
     // Integrators.
     {"order-position", integrators,
      "The error of positions falls with the declared order when the step is halved. Look at the weights of the "

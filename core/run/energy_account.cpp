@@ -133,6 +133,16 @@ void EnergyAccount::add_part(double dt, std::span<const double> begin, std::span
   }
 }
 
+bool EnergyAccount::add_history_loss(int joint, double loss, const Evaluation& e, std::size_t& flow) {
+  const std::span<const ForceBlock> blocks = system_.forces().blocks();
+  const auto block = std::ranges::find(blocks, joint, &ForceBlock::joint);
+  if (block == blocks.end() || std::isnan(e.potential_rate[at(joint)])) return false;
+  flow = integral_.size() - blocks.size() + static_cast<std::size_t>(block - blocks.begin());
+  integral_[flow] -= loss;
+  exchanged_ += std::abs(loss);
+  return true;
+}
+
 double EnergyAccount::largest_power(const Evaluation& start, std::span<const double> lambda_start,
                                     const Evaluation& end, std::span<const double> lambda_end) {
   flow(start, lambda_start, integral_inside_);

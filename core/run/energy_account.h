@@ -94,6 +94,10 @@ class EnergyAccount final : public Flows {
     integral_[static_cast<std::size_t>(driver)] += work;
     exchanged_ += std::abs(work);
   }
+  /// What a joint that acts by forces lost at the end of the last step as its history changed [J]. Nothing is done, and
+  /// false returned, where it gives no rate of what it stores: the differences of that have it already. The index is
+  /// that of its flow.
+  bool add_history_loss(int joint, double loss, const Evaluation& e, std::size_t& flow);
   /// Work put in and taken out since the start, both counted as positive, by element and step [J].
   double exchanged() const { return exchanged_; }
 

@@ -1,6 +1,8 @@
 #include "run/step_acceptance.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "base/index.h"
 #include "run/dense_step.h"
@@ -56,6 +58,23 @@ void StepAcceptance::add_energy() {
   run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
 }
 
+bool StepAcceptance::add_history_losses() {
+  const std::span<double> lost = run_.events.lost();
+  for (std::size_t j = 0; j < lost.size(); ++j) {
+    if (lost[j] == 0.0) continue;
+    const double loss = std::exchange(lost[j], 0.0);
+    if (!std::isfinite(loss)) {
+      Fault fault;
+      fault.refuse(static_cast<int>(j), "it said that it dissipated an energy that is not a finite number");
+      return failure_.fail_with(fault, run_.trial.t());
+    }
+    std::size_t flow = 0;
+    if (!run_.energy.add_history_loss(static_cast<int>(j), loss, run_.e_trial, flow)) continue;
+    if (run_.flows > 0) run_.trial.z().last(at(run_.flows))[flow] -= loss;
+  }
+  return true;
+}
+
 bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
   const auto mobility = [](void* self, int joint, double* out) {
     auto& run = *static_cast<RunContext*>(self);
@@ -89,7 +108,7 @@ bool StepAcceptance::accept(const End& end) {
   if (run_.adaptive && (!recorder_.write_rows_inside() || !recorder_.begin_statistics_inside())) return false;
   const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded);
   if (expected && !recorder_.note_abrupt_end()) return false;
-  if (!apply_events(end.located, end.late) || !attempt_.commit_history()) return false;
+  if (!apply_events(end.located, end.late) || !attempt_.commit_history() || !add_history_losses()) return false;
   run_.events.renew_switches(run_.trial, run_.e_trial);
   std::swap(run_.accepted, run_.trial);
   swap(run_.e_accepted, run_.e_trial);

@@ -33,6 +33,8 @@ class StepAcceptance {
 
  private:
   void add_energy();
+  /// What joints lost as their history changed. False where one says no number.
+  bool add_history_losses();
   bool apply_events(const StepEvents::Passage& located, double late);
   /// What acts may have changed at the end of the step.
   bool go_on_from(bool changed, const End& end);

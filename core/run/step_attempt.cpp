@@ -34,8 +34,9 @@ bool StepAttempt::commit_history() {
     if (run_.evaluations.is_asleep(j)) continue;
     const Slice h = run_.system.layout().history(j), rows = run_.system.layout().rows(j);
     const Span<double> history = all_history.part(at(h.offset), at(h.size));
-    if (!run_.system.joints().handle(j).commit(run_.system.joints().input(j, end, run_.e_trial),
-                                               {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
+    JointInput in = run_.system.joints().input(j, end, run_.e_trial);
+    in.dissipated = &run_.events.lost()[at(j)];
+    if (!run_.system.joints().handle(j).commit(in, {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
         !keeps_finite({}, history, "commit", fault.message)) {
       fault.kind = Fault::Kind::plugin;
       fault.joint = j;

@@ -39,7 +39,8 @@ StepEvents::StepEvents(const System& system, const EvaluationContext& context, b
       switches_(system),
       between_(between),
       e_between_(e_between),
-      inside_(system.model().joints.size() + 1, 0) {
+      inside_(system.model().joints.size() + 1, 0),
+      lost_(system.model().joints.size(), 0.0) {
   std::size_t most_events = 0, all_fields = 0, all_events = 0;
   const int joints = static_cast<int>(system.model().joints.size());
   for (int j = 0; j < joints + (located ? 1 : 0); ++j) {
@@ -377,6 +378,7 @@ bool StepEvents::handle(int joint, int event, const Point& here, const Evaluatio
   values_.resize(first + count, std::numeric_limits<double>::quiet_NaN());
   JointInput in = system_.joints().input(joint, here, e);
   in.mobility = mobility;
+  in.dissipated = &lost_[at(joint)];
   if (mobility != nullptr && system_.joints().layout(joint).wants_whole_mobility != 0) in.whole_mobility = mobility + 9;
   const Span<double> internal = Span<double>(state.z()).part(at(z.offset), at(z.size)),
                      history = Span<double>(state.h()).part(at(h.offset), at(h.size));
@@ -394,6 +396,7 @@ bool StepEvents::handle(int joint, int event, const Point& here, const Evaluatio
 }
 
 bool StepEvents::at_start(State& start, const Evaluation& e, Fault& fault) {
+  std::ranges::fill(lost_, 0.0);
   happenings_.clear();
   values_.clear();
   switched_ = switches_.renew(start, e);

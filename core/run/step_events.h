@@ -58,6 +58,8 @@ class StepEvents {
   /// when hunted.joint is -1.
   bool apply_at_end(const Passage& hunted, double late, State& after, const Evaluation& e_after, Mobility mobility,
                     void* self, Fault& fault);
+  /// By joint: where JointInput::dissipated of on_event() and commit() points [J]; whoever books it clears it.
+  std::span<double> lost() { return lost_; }
   static constexpr double tolerance = 1e-12;  ///< of a located event function, in its unit
   static constexpr int most_per_step = 8;     ///< of one joint inside a step; more are rounding, not motion
 
@@ -158,6 +160,7 @@ class StepEvents {
   std::vector<char> inside_;                    // by joint: some of its events are passed on inside a step
   std::vector<double> g0_, r0_, gm_, rm_, g1_, r1_, values_;
   std::vector<Happening> happenings_;
+  std::vector<double> lost_;
 };
 
 }  // namespace freeplay

@@ -1,6 +1,9 @@
 // The joint suite finds what is wrong with a joint, and nothing in one that is right.
 #include "contract/joint_contract.h"
 
+#include <algorithm>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "allocation_counter.h"
@@ -159,6 +162,40 @@ TEST(JointContract, FindsHiddenState) {
       {{Flaw::counts_calls, "no-hidden-state"}, {Flaw::keeps_contact, "rollback"}, {Flaw::event_rate, "event-rate"}});
   const Cage soft(Flaw::none, false, 2e4), stiff(Flaw::none, false, 3e4);
   EXPECT_TRUE(judge(soft, stiff).broken("same-twin"));
+}
+
+/// A torsional spring that yields at a tenth of a radian when a step is accepted, and says so in part.
+class Yielding final : public Joint {
+ public:
+  explicit Yielding(double said) : said_(said) {}
+  void declare(JointLayout& layout) const override {
+    layout.time_scale = unbounded;
+    layout.coordinate = Coordinate::angle;
+    layout.history = layout.forces = 1;
+  }
+  void coordinate(const JointInput& in, CoordinateRow& row) const override { Swivel().coordinate(in, row); }
+  void apply(const JointInput& in, JointForces& out) const override {
+    const double bend = in.coordinate - in.history[0];
+    out.wrench_a[5] = bend;
+    out.wrench_b[5] = -bend;
+    out.potential = 0.5 * bend * bend;
+    out.potential_rate = bend * in.coordinate_rate;
+  }
+  void commit(const JointInput& in, Span<const double>, Span<double> history) const override {
+    const double bend = in.coordinate - history[0], kept = std::clamp(bend, -0.1, 0.1);
+    history[0] = in.coordinate - kept;
+    *in.dissipated += said_ * 0.5 * (bend * bend - kept * kept);
+  }
+
+ private:
+  double said_;
+};
+
+TEST(JointContract, FindsWhatCommitLosesInSilence) {
+  const Yielding sound(1.0), silent(0.0), wild(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_TRUE(judge(sound, sound).held()) << broken_rules(judge(sound, sound));
+  EXPECT_TRUE(judge(silent, silent).broken("history-loss")) << broken_rules(judge(silent, silent));
+  EXPECT_TRUE(judge(wild, wild).broken("finite")) << broken_rules(judge(wild, wild));
 }
 
 TEST(JointContract, FindsWrongCalls) {

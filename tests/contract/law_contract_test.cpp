@@ -229,6 +229,50 @@ TEST(FrictionLawContract, FindsHiddenStateAndTwinsThatDiffer) {
   EXPECT_TRUE(check_friction_law({handle(law), handle(other)}, conditions).broken("same-twin"));
 }
 
+/// bristle(), whose memory starts and is reset and stores as the members say.
+struct Remembering final : FrictionLaw {
+  int internal_variables() const override { return 1; }
+  FrictionForce evaluate(const FrictionState& s, Span<double> rate) const override { return bristle(s, rate); }
+  void memory(Span<double> start, Span<MemoryReset> resets) const override {
+    start[0] = starts_with;
+    resets[0] = reset;
+    if (writes_beside) start.data[1] = 0.0;
+  }
+  double stored(Span<const double> z, Span<double> slopes) const override {
+    slopes[0] = slope * z[0];
+    return 50.0 * (z[0] * z[0] - zero * zero);
+  }
+  double starts_with = 0.0, zero = 0.0, slope = 100.0;
+  MemoryReset reset = MemoryReset::each_contact;
+  bool writes_beside = false;
+};
+Findings judge_memory(const std::function<void(Remembering&)>& change) {
+  Remembering law;
+  change(law);
+  const FrictionLawRef given{abi::friction_law_table<Remembering>, &law};
+  return check_friction_law({given, given}, conditions);
+}
+
+TEST(FrictionLawContract, HoldsForSoundMemory) {
+  const Findings sound = judge_memory([](Remembering&) {});
+  EXPECT_TRUE(sound.held()) << broken_rules(sound);
+  const Findings started = judge_memory([](Remembering& law) { law.starts_with = law.zero = 1e-6; });
+  EXPECT_TRUE(started.held()) << broken_rules(started);
+}
+
+TEST(FrictionLawContract, FindsWrongMemory) {
+  const auto expect_memory = [](const char* rule, const std::function<void(Remembering&)>& change) {
+    const Findings findings = judge_memory(change);
+    EXPECT_TRUE(findings.broken(rule)) << rule << " is not reported, but\n" << broken_rules(findings);
+  };
+  expect_memory("memory", [](Remembering& law) { law.starts_with = std::numeric_limits<double>::infinity(); });
+  expect_memory("memory", [](Remembering& law) { law.reset = static_cast<MemoryReset>(7); });
+  expect_memory("stays-in-span", [](Remembering& law) { law.writes_beside = true; });
+  expect_memory("stored-energy", [](Remembering& law) { law.slope = 101.0; });
+  expect_memory("stored-energy", [](Remembering& law) { law.starts_with = 1e-6; });
+  expect_memory("stored-energy", [](Remembering& law) { law.reset = MemoryReset::never; });
+}
+
 TEST(FrictionLawContract, FindsWrongCalls) {
   expect_slip_found("finite",
                     [](FrictionForce& f, const FrictionState& s) { f.d_slip /= s.normal_force > 0.0 ? 1.0 : 0.0; });

@@ -93,6 +93,15 @@ class PageTest(InstalledTest):
         self.assertGreaterEqual(summary["advice"]["min_steps_per_contact"], 20)
         self.assertLess(summary["residuals"]["energy_max"], 1e-8)
 
+        rows = self.rows("results", "running-in", "results.csv")
+        self.assertEqual(41, len(rows))
+        for row in rows:
+            slid = 2e-3 + float(row["body.block.x"]) - float(rows[0]["body.block.x"])
+            mu = 0.3 - 0.2 * slid / 5e-3 if slid < 5e-3 else 0.1 - 0.05 * (slid - 5e-3) / 15e-3
+            slip, normal = float(row["joint.guide.vt"]), float(row["joint.guide.fn"])
+            self.assertAlmostEqual(-mu * normal * slip / math.hypot(slip, 1e-3), float(row["joint.guide.ft"]),
+                                   delta=1e-4 * normal)
+
     def test_a_term_left_out_is_found(self):
         with open(PAGE, encoding="utf-8") as file:
             source = next(text for language, name, text in BLOCK.findall(file.read()) if language == "cpp")

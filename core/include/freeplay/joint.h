@@ -164,6 +164,10 @@ struct JointInput {
   /// of b, for a unit wrench on b there and its opposite on a at the same point. So 1/m of a contact with the wrench w
   /// on b is w.(W w), turning included.
   const double* whole_mobility = nullptr;
+  /// commit() and on_event(): where a joint that gives potential_rate adds the energy [J] that it loses as it changes
+  /// `history` or `internal` there, because it yields or forgets what it stored: JointForces::potential falls by as
+  /// much. The host books it as dissipated. Else null.
+  double* dissipated = nullptr;
 };
 
 /// Rows of Phi(q,t) = 0. Zeroed by the host.

@@ -1,10 +1,11 @@
 // What friction remembers of one contact.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
-#include "freeplay/span.h"
+#include "freeplay/friction_law.h"
 
 namespace freeplay::play {
 
@@ -24,6 +25,27 @@ struct MemoryOf {
   }
   double z[most];
   std::size_t size;
+};
+
+/// What a law of friction declares of its internal variables, `most` at most.
+template <std::size_t most>
+struct MemoryRules {
+  MemoryRules() = default;
+  /// The law has no more than `most` of them.
+  explicit MemoryRules(const FrictionLawRef& law)
+      : size(static_cast<std::size_t>(std::max(law.internal_variables(), 0))) {
+    law.memory({start, size}, {resets, size});
+  }
+  bool forgets(std::size_t k) const { return resets[k] == MemoryReset::each_contact; }
+  /// Whether memory is what a deflection is: zero at first, and forgotten.
+  bool is_deflection() const {
+    for (std::size_t k = 0; k < size; ++k)
+      if (start[k] != 0.0 || !forgets(k)) return false;
+    return true;
+  }
+  double start[most]{};
+  MemoryReset resets[most]{};
+  std::size_t size = 0;
 };
 
 }  // namespace freeplay::play

@@ -8,41 +8,11 @@
 #include <cstddef>
 
 #include "freeplay/kit/contact_events.h"
+#include "freeplay/kit/contact_parts.h"
 #include "freeplay/kit/contact_phase.h"
 #include "freeplay/kit/dual.h"
 
 namespace freeplay::play {
-
-/// Part of the laws' forces that each contact of a geometry has: `Geometry::share`, the whole without it.
-template <class Geometry>
-constexpr double share_of() {
-  if constexpr (requires { Geometry::share; }) {
-    return Geometry::share;
-  } else {
-    return 1.0;
-  }
-}
-
-/// One contact that is on, for what a class of kinematics does with it.
-template <class Kinematics>
-struct LoadedContact {
-  const typename Kinematics::Laws& laws;
-  const typename Kinematics::template Contact<double>& at;
-  const ContactForce& normal;
-  typename Kinematics::Memory memory;
-  double share;
-  std::size_t first, columns;  ///< of its internal variables among those of the joint; length of a row of derivatives
-};
-
-/// Whether b may go away from the surface further than the scale of a flight.
-template <class Geometry>
-constexpr bool leaves_surface() {
-  if constexpr (requires { Geometry::leaves; }) {
-    return Geometry::leaves;
-  } else {
-    return false;
-  }
-}
 
 /// A joint whose contacts stand where `Geometry` says:
 ///
@@ -106,6 +76,11 @@ class Contacts : public Joint {
       out.potential_rate += share * storing_power(laws_.normal, at.approach(), loads.normal[i]);
       const Sideways friction =
           Kinematics::friction(laws_, loads.normal[i].normal, at, memory(in, i), part_of(out.internal_rate, i));
+      if constexpr (stores) {
+        const Stored more = stored(in, i, part_of(out.internal_rate, i));
+        out.potential += share * more.energy;
+        out.potential_rate += share * more.rate;
+      }
       total.add(share * Kinematics::force(at, loads.normal[i].normal, friction), at);
     }
     pair.write(total, out);
@@ -113,7 +88,7 @@ class Contacts : public Joint {
   }
 
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
-    std::fill(internal.begin(), internal.end(), 0.0);
+    for (std::size_t k = 0; k < internal.size; ++k) internal[k] = laws_.start_of(k % each_memory());
     std::fill(history.begin(), history.end(), 0.0);
     const Pair pair(in);
     const Motion<double>& motion = pair.numbers();
@@ -148,7 +123,7 @@ class Contacts : public Joint {
       if (moved > 0.0) own[impact_time] = impact_duration(laws_.normal, at.approach(), geometry_.play, moved, share);
     } else {
       tell_end(one, at.approach(), own, fields);
-      forget(i, internal, history);
+      forget(i, in, internal, history);
     }
     fields[1] = Kinematics::signed_size(at.slip);
     fields[2] = Kinematics::direction(pair, at);
@@ -161,7 +136,7 @@ class Contacts : public Joint {
       const Span<double> own = history.part(i * slots, slots);
       const bool touched = own[phase] != flight;
       play::commit(contact_input(in, i), gap(geometry, motion, i), laws_.normal, share, own);
-      if (touched && own[phase] == flight) forget(i, in.internal, history);
+      if (touched && own[phase] == flight) forget(i, in, in.internal, history);
     }
     if constexpr (keeps) geometry_.keep(motion, kept(history));
   }
@@ -203,11 +178,13 @@ class Contacts : public Joint {
       if (!loads.on[i]) continue;
       const ContactForce& f = loads.normal[i];
       const Contact<double>& at = loads.at[i];
-      const Sideways friction = friction_alone(in, loads, i);
+      double rates[Kinematics::most_memory];
+      const Sideways friction = Kinematics::friction(laws_, f.normal, at, memory(in, i), {rates, each_memory()});
       numbers[3 * i] = share * f.normal;
       numbers[3 * i + 1] = share * Kinematics::signed_size(friction);
       numbers[3 * i + 2] = share * (f.normal * at.rate - storing_power(laws_.normal, at.approach(), f) -
                                     Kinematics::power(friction, at.slip));
+      if constexpr (stores) numbers[3 * i + 2] -= share * stored(in, i, {rates, each_memory()}).rate;
     }
   }
   void kinks(const JointInput& in, Span<double> g) const override {
@@ -295,6 +272,7 @@ class Contacts : public Joint {
   using Contact = typename Kinematics::template Contact<T>;
 
   static constexpr std::size_t sum_channels = 6;
+  static constexpr bool stores = requires { &Kinematics::stored; };  // memory may store energy
   static constexpr bool has_turning_rates = requires(const Motion<double>& m) { m.w_a; };
 
   static Contact<double> contact(const Geometry& geometry, const Motion<double>& motion, std::size_t i) {
@@ -372,9 +350,21 @@ class Contacts : public Joint {
   typename Kinematics::Memory memory(const JointInput& in, std::size_t i) const {
     return {part_of(in.internal, i), forgotten(in.history, i)};
   }
-  void forget(std::size_t i, Span<const double> internal, Span<double> history) const {
+  /// A contact ends: what its memory stored is lost, and what it forgets is at its start again.
+  void forget(std::size_t i, const JointInput& in, Span<const double> internal, Span<double> history) const {
     const Span<const double> own = part_of(internal, i);
-    std::copy(own.begin(), own.end(), forgotten(history, i).begin());
+    const Span<double> zero = forgotten(history, i);
+    if constexpr (stores) {
+      const double none[Kinematics::most_memory]{};
+      if (in.dissipated != nullptr && own.size > 0)
+        *in.dissipated +=
+            share * Kinematics::stored(laws_, typename Kinematics::Memory(own, zero), {none, own.size}).energy;
+    }
+    for (std::size_t k = 0; k < own.size; ++k)
+      if (laws_.forgets(k)) zero[k] = own[k] - laws_.start_of(k);
+  }
+  Stored stored(const JointInput& in, std::size_t i, Span<const double> rates) const {
+    return each_memory() == 0 ? Stored{} : Kinematics::stored(laws_, memory(in, i), rates);
   }
   Sideways friction_alone(const JointInput& in, const Loads& loads, std::size_t i) const {
     double unused[Kinematics::most_memory];

@@ -21,10 +21,13 @@ struct PlanarLaws {
     if (friction.internal_variables() > static_cast<int>(most_internal_variables))
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
-    variables = static_cast<std::size_t>(friction.internal_variables());
+    rules = MemoryRules<most_internal_variables>(friction);
+    variables = rules.size;
   }
   /// Internal variables of one contact.
   std::size_t memory() const { return variables; }
+  double start_of(std::size_t k) const { return rules.start[k]; }
+  bool forgets(std::size_t k) const { return rules.forgets(k); }
   /// Of one contact: where its laws have kinks.
   std::int32_t count_kinks() const { return play::count_kinks(normal, friction); }
   void write_kinks(const Approach& gap, double slip, const JointInput& in, Span<double> g) const {
@@ -33,6 +36,7 @@ struct PlanarLaws {
   ContactLawRef normal;
   FrictionLawRef friction;
   std::size_t variables = 0;
+  MemoryRules<most_internal_variables> rules;
 };
 
 /// How bodies move against each other in the plane, and what friction is there: F_T t along the tangent t.
@@ -58,6 +62,13 @@ struct InPlane {
   template <class T>
   static Vec2<T> force(const PlanarContact<T>& at, const T& normal, const T& tangential) {
     return tangential * at.tangent - normal * at.normal;
+  }
+  /// What the memory of friction stores, and how fast that grows with these rates.
+  static Stored stored(const Laws& laws, const Memory& memory, Span<const double> rates) {
+    double slopes[most_memory];
+    Stored all{laws.friction.stored(memory, {slopes, memory.size}), 0.0};
+    for (std::size_t k = 0; k < memory.size; ++k) all.rate += slopes[k] * rates[k];
+    return all;
   }
   static double signed_size(double along) { return along; }
   static double power(double force, double slip) { return force * slip; }

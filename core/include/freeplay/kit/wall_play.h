@@ -8,11 +8,22 @@
 
 namespace freeplay::play {
 
-/// A law that computes its stiffness from two radii has none here. Throws BadParameter.
-inline PlanarLaws wall_laws(const Parameters& p, double play) {
-  ContactPair pair{not_a_number, not_a_number, play, not_a_number, {}, {}};
+/// What laws may know of a flat wall of a and what touches it with that play to each side [m]: a corner of b, or a pin
+/// or a ball, whose radius may be known [m].
+inline ContactPair at_wall(SurfaceShape shape, double play, double radius = not_a_number) {
+  ContactPair pair{not_a_number, radius, play, not_a_number, {}, {}};
+  pair.bearing_shape = SurfaceShape::plane;
+  pair.journal_shape = shape;
+  return pair;
+}
+/// The laws of a block `clearance` for such a pair, with its materials. Throws BadParameter.
+inline PlanarLaws wall_laws(const Parameters& p, ContactPair pair) {
   read_materials(p, pair);
   return {p, pair};
+}
+/// The same where nothing is known of what touches the wall: a law computes no stiffness from radii.
+inline PlanarLaws wall_laws(const Parameters& p, double play) {
+  return wall_laws(p, at_wall(SurfaceShape::unknown, play));
 }
 
 /// The key `initial`: where b starts across the walls.
