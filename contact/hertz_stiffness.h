@@ -25,17 +25,20 @@ inline constexpr Parameter exponent_parameter{.name = "exponent",
 
 /// What has to be in `pair` for hertz_stiffness() and is not, as words for a message; "" when all is there.
 inline std::string missing_for_hertz(const ContactPair& pair) {
+  const bool on_plane = pair.bearing_shape == SurfaceShape::plane;
   return MissingData()
-      .need(known(pair.bearing_radius) && known(pair.journal_radius), "the radii")
+      .need(known(pair.relative_curvature()), on_plane ? "the radius of what touches the wall" : "the radii")
       .need_materials(pair)
       .words();
 }
 
-/// Stiffness [N/m^1.5] of a sphere (journal) in a spherical cavity (bearing):
+/// Stiffness [N/m^1.5] of a sphere (journal) in a spherical cavity (bearing), or on a plane, whose 1/R_b is 0:
 ///   K = 4/(3 (h_b + h_j)) sqrt(R_b R_j/(R_b - R_j)),  h = (1 - nu^2)/E
 /// with radii R [m], Young's modulus E [Pa], Poisson's ratio nu. Hertz 1881; Lankarani and Nikravesh 1990.
 inline double hertz_stiffness(const ContactPair& pair) {
-  const double radius = pair.bearing_radius * pair.journal_radius / pair.radial_clearance;
+  const bool on_plane = pair.bearing_shape == SurfaceShape::plane;
+  const double radius =
+      on_plane ? pair.journal_radius : pair.bearing_radius * pair.journal_radius / pair.radial_clearance;
   return 4.0 / (3.0 * contact_compliance(pair)) * std::sqrt(radius);
 }
 
@@ -52,8 +55,13 @@ class HertzSpring {
     if (!missing.empty())
       throw BadParameter("", "missing-key", "'K' is required, as it cannot be computed without " + missing);
     stiffness_ = hertz_stiffness(pair);
-    // Hertz theory needs a contact patch much smaller than the radii.
-    largest_penetration_ = 0.1 * pair.radial_clearance;
+    // Hertz theory needs a contact patch much smaller than the radii: half as wide as sqrt(R delta), R the relative
+    // one.
+    const bool on_plane = pair.bearing_shape == SurfaceShape::plane;
+    largest_penetration_ = 0.1 * (on_plane ? pair.journal_radius : pair.radial_clearance);
+    too_deep_ = on_plane ? "The penetration passes a tenth of the radius: the contact patch is not small against it, "
+                           "and the stiffness of Hertz only serves as a model."
+                         : too_deep_;
   }
 
   ContactForce force(const ContactState& state, double chi) const {
@@ -69,16 +77,16 @@ class HertzSpring {
 
   /// A static sentence when the penetration is too deep for the computed K.
   const char* outside_range(const ContactState& state) const {
-    return state.penetration > largest_penetration_ ? "The penetration passes a tenth of the radial clearance: the "
-                                                      "contact is conformal, and the stiffness of "
-                                                      "Hertz only serves as a model."
-                                                    : nullptr;
+    return state.penetration > largest_penetration_ ? too_deep_ : nullptr;
   }
 
  private:
   static constexpr double point_contact = 1.5;
   double stiffness_, exponent_;
   double largest_penetration_ = unbounded;  // [m]
+  const char* too_deep_ =
+      "The penetration passes a tenth of the radial clearance: the contact is conformal, and the "
+      "stiffness of Hertz only serves as a model.";
 };
 
 }  // namespace freeplay

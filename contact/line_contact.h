@@ -60,6 +60,9 @@ class LineContact : public ContactLaw {
  protected:
   /// Reads damping and restitution. Throws BadParameter "missing-key" when the pair lacks something.
   LineContact(const Parameters& p, const ContactPair& pair, const LineForm& form) {
+    if (pair.bearing_shape == SurfaceShape::plane || pair.journal_shape == SurfaceShape::corner)
+      throw BadParameter("", "out-of-range",
+                         "this law is one of a cylinder in a cylindrical hole, here is a flat wall");
     const double clearance =
         known(pair.radial_clearance) ? pair.radial_clearance : pair.bearing_radius - pair.journal_radius;
     const std::string missing = MissingData()

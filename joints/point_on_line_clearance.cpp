@@ -99,7 +99,7 @@ class PointOnLineClearance final : public PlanarContacts<PinInSlot> {
   PointOnLineClearance(const Parameters& p, const Sizes& sizes)
       : PlanarContacts(
             {sizes.radii.known() ? sizes.radii.journal : 0.0, sizes.radii.clearance, sizes.ends[0], sizes.ends[1]},
-            wall_laws(p, sizes.radii.clearance)),
+            wall_laws(p, at_wall(SurfaceShape::cylinder, sizes.radii.clearance, sizes.radii.journal))),
         start_(p) {
     if (!sizes.radii.known() && !is_inert(laws().friction))
       throw BadParameter("clearance", "missing-key", "friction needs 'slot_width' or 'pin_radius'");

@@ -126,9 +126,14 @@ class PrismaticClearance final : public PlanarContacts<BlockInGuide> {
   }
 
  private:
+  static ContactPair corner_at_wall(double play, double length) {
+    ContactPair pair = at_wall(SurfaceShape::corner, play);
+    pair.face_length = length;
+    return pair;
+  }
   PrismaticClearance(const Parameters& p, const Radii& widths)
       : PlanarContacts({0.5 * p.number("clearance.length"), widths.known() ? widths.journal : 0.0, widths.clearance},
-                       wall_laws(p, widths.clearance)),
+                       wall_laws(p, corner_at_wall(widths.clearance, p.number("clearance.length")))),
         start_(p) {
     for (const char* height : {"clearance.guide_height", "clearance.height", "clearance.gap_height"})
       if (p.given(height))

@@ -225,7 +225,8 @@ class BarWithPlay final : public WallContacts<BarInGuide> {
     across = {WallStart::across(p, path), p.vector(path)[2]};
   }
   static ContactPair surfaces(const Parameters& p, const BarInGuide& bar) {
-    ContactPair pair{not_a_number, not_a_number, bar.play, not_a_number, {}, {}};
+    ContactPair pair = at_wall(SurfaceShape::corner, bar.play);
+    pair.face_length = p.number("clearance.length");
     read_materials(p, pair);
     return pair;
   }

@@ -17,6 +17,49 @@ TEST(Hertz, StiffnessFollowsFromRadiiAndMaterial) {
   EXPECT_NEAR(stiffness(pair_of(0.008, 0.0079, bronze, steel)) / 85233797541.2324, 1.0, 1e-13);
 }
 
+ContactPair on_wall(SurfaceShape shape, double radius) {
+  ContactPair pair{unknown, radius, 1e-4, unknown, steel, steel};
+  pair.bearing_shape = SurfaceShape::plane;
+  pair.journal_shape = shape;
+  return pair;
+}
+
+// K = 4/(3(h_b + h_j)) sqrt(R_j): a wall has no curvature; h = (1 - 0.3^2)/207e9 of both.
+TEST(Hertz, StiffnessOnAWallFollowsFromTheRadiusOfWhatTouchesIt) {
+  const double expected = 4.0 / (3.0 * 2.0 * (1.0 - 0.09) / 207e9) * std::sqrt(0.005);
+  for (const SurfaceShape shape : {SurfaceShape::cylinder, SurfaceShape::sphere, SurfaceShape::unknown})
+    EXPECT_NEAR(stiffness(on_wall(shape, 0.005)) / expected, 1.0, 1e-14);
+  const auto id = [](const ContactPair& pair) {
+    return bad_parameter_id([&] { ContactUnderTest("hertz", {}, pair); });
+  };
+  EXPECT_EQ(id(on_wall(SurfaceShape::cylinder, unknown)), "missing-key");
+  EXPECT_EQ(id(on_wall(SurfaceShape::corner, unknown)), "missing-key");
+  EXPECT_EQ(id(on_wall(SurfaceShape::plane, unknown)), "missing-key");
+  // A tenth of the radius, not of the play.
+  const ContactUnderTest law("hertz", {}, on_wall(SurfaceShape::cylinder, 0.005));
+  EXPECT_EQ(law.law.outside_range({4.9e-4, 0.0, 0.0}), nullptr);
+  EXPECT_NE(law.law.outside_range({5.1e-4, 0.0, 0.0}), nullptr);
+}
+
+TEST(ContactPair, TellsAWallFromABearingWhoseRadiusIsNotKnown) {
+  ContactPair pair = pair_of(0.005, 0.0049);
+  EXPECT_NEAR(pair.relative_curvature(), 1.0 / 0.0049 - 1.0 / 0.005, 1e-12);
+  EXPECT_TRUE(pair.conforming());
+  pair.bearing_radius = unknown;
+  EXPECT_TRUE(std::isnan(pair.relative_curvature()));
+  EXPECT_FALSE(pair.conforming());
+  pair.bearing_shape = SurfaceShape::cylinder;  // a bearing all the same
+  EXPECT_TRUE(std::isnan(pair.relative_curvature()));
+  EXPECT_TRUE(pair.conforming());
+  pair.bearing_shape = SurfaceShape::plane;
+  EXPECT_EQ(pair.relative_curvature(), 1.0 / 0.0049);
+  EXPECT_FALSE(pair.conforming());
+  EXPECT_TRUE(std::isnan(on_wall(SurfaceShape::corner, unknown).relative_curvature()));
+  EXPECT_FALSE(on_wall(SurfaceShape::corner, unknown).conforming());
+  EXPECT_TRUE(std::isnan(on_wall(SurfaceShape::plane, unknown).relative_curvature()));
+  EXPECT_TRUE(on_wall(SurfaceShape::plane, unknown).conforming());
+}
+
 TEST(Hertz, IsElastic) {
   const ContactUnderTest under_test("hertz", {{"K", 75062104464.4181}}, bare_pair());
   for (const double rate : {-0.2, -0.05, 0.0, 0.05})

@@ -123,6 +123,10 @@ inline void expect_line_refusals(const std::string& name) {
   EXPECT_EQ(id(bare), "missing-key");
   bare.bearing = steel;
   EXPECT_EQ(id(bare), "missing-key");
+  // Its clearance is that of two cylinders: the play at a wall is another number.
+  ContactPair wall = line_pair(0.015, 1e-4);
+  wall.bearing_shape = SurfaceShape::plane;
+  EXPECT_EQ(id(wall), "out-of-range");
   EXPECT_EQ(id(line_pair(0.015, 1e-4), {}, {{"damping", 1}}), "missing-key");
   EXPECT_EQ(id(line_pair(0.015, 1e-4), {{"restitution", 0.9}}), "conflicting-keys");
   EXPECT_EQ(id(line_pair(0.015, 1e-4), {{"restitution", 0.9}}, {{"damping", 1}}), "");
