@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -39,7 +40,6 @@
 #include "results/recording.h"
 #include "results/row_memory.h"
 #include "results/summary.h"
-#include "run/simulation.h"
 
 namespace freeplay {
 namespace {
@@ -125,6 +125,7 @@ class RunJob {
     RunExtremes extremes;
     std::vector<double> last_row;
     std::vector<std::string> warnings;
+    std::vector<JointMemory> memory;
     Json twin = nullptr;
   };
 
@@ -224,11 +225,8 @@ class RunJob {
   Ended end() {
     const auto row = simulation_->last_row();
     const auto warnings = simulation_->warnings();
-    Ended ended{simulation_->statistics(),
-                simulation_->clearances(),
-                simulation_->extremes(),
-                {row.begin(), row.end()},
-                {warnings.begin(), warnings.end()}};
+    Ended ended{simulation_->statistics(), simulation_->clearances(),          simulation_->extremes(),
+                {row.begin(), row.end()},  {warnings.begin(), warnings.end()}, simulation_->memory()};
     simulation_.reset();
     twin_rows_.reset();
     return ended;
@@ -244,8 +242,7 @@ class RunJob {
     record.hashes = recording_.hashes();
     record.provenance = recording_.provenance();
     record.provenance["hashes"] = record.hashes;
-    record.extremes = ended.extremes;
-    record.twin = ended.twin;
+    std::tie(record.extremes, record.twin, record.memory) = std::tie(ended.extremes, ended.twin, ended.memory);
     record.trust.add(outcome.doubts);
     doubt_input(loaded_.diagnostics, record.trust);
     judge(record, record.trust);

@@ -350,6 +350,7 @@ void OngoingRun::keep_summary(const Outcome& outcome) {
   record.provenance["hashes"] = record.hashes;
   record.extremes = simulation_->extremes();
   record.twin = beside_->twin();
+  record.memory = simulation_->memory();
   record.trust.add(outcome.doubts);
   doubt_input(diagnostics_, record.trust);
   judge(record, record.trust);

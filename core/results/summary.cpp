@@ -10,6 +10,7 @@
 #include "base/sha256.h"
 #include "base/version.h"
 #include "component/joint_roles.h"
+#include "results/memory_json.h"
 #include "run/figure_noise.h"
 
 namespace freeplay {
@@ -421,6 +422,7 @@ Json summary(const RunRecord& record) {
           {"drivers", drivers_part(record)},
           {"forces", forces_part(record)},
           {"paths", paths_part(record)},
+          {"memory", memory_json(record.model, record.memory)},
           {"energy", energy_part(record.channels.energy, record.last_row)},
           {"advice", advice_part(record.advice)},
           {"verify", verify_part(record)},

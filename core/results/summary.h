@@ -32,6 +32,7 @@ struct RunRecord {
   RunExtremes extremes{};
   Json verification{};  ///< what the second run was and what it says of the first; null without one
   Verdict trust{};
+  std::vector<JointMemory> memory{};            ///< by joint, at the end; empty: not known
   Json hashes = nullptr, provenance = nullptr;  ///< of Recording
   Json repeat = nullptr;                        ///< of RepeatSummary, of a repeated run
   Json twin = nullptr;                          ///< of TwinComparison, of a run beside its ideal twin

@@ -218,6 +218,7 @@ Json summary_schema() {
        {"drivers", by_name(driver_part())},
        {"forces", by_name(force_part())},
        {"paths", by_name(numbers({"max_position", "rms_position", "max_angle", "rms_angle"}))},
+       {"memory", by_name(record({{"internal", list_of(number())}, {"history", list_of(number())}}))},
        {"energy", numbers({"kinetic", "potential", "dissipated", "work", "residual"})},
        {"advice",
         record(

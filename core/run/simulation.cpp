@@ -198,6 +198,19 @@ Simulation::Simulation(const System& whole, const Start& start, const Channels& 
 Simulation::~Simulation() = default;
 RunState Simulation::save() const { return impl_->save(); }
 EndedMotion Simulation::motion() const { return impl_->motion(); }
+std::vector<JointMemory> Simulation::memory() const {
+  const RunContext& context = impl_->context;
+  const auto part = [](std::span<const double> all, const Slice& slice) {
+    const auto own = all.subspan(at(slice.offset), at(slice.size));
+    return std::vector<double>(own.begin(), own.end());
+  };
+  std::vector<JointMemory> all;
+  for (int j = 0; j < context.system.joints().count(); ++j) {
+    const Layout& layout = context.system.layout();
+    all.push_back({part(context.accepted.z(), layout.internal(j)), part(context.accepted.h(), layout.history(j))});
+  }
+  return all;
+}
 Outcome Simulation::run(const RunHooks& hooks) {
   begin(hooks);
   advance({});

@@ -24,6 +24,11 @@ namespace freeplay {
 /// Drivers of a model whose efforts are inputs, in declaration order.
 std::vector<int> inputs_of(const Model& model);
 
+/// What a joint remembers: its share of z and h.
+struct JointMemory {
+  std::vector<double> internal, history;
+};
+
 /// Advances a model from its start to Settings::end and feeds sinks and statistics.
 class Simulation {
  public:
@@ -56,6 +61,8 @@ class Simulation {
   RunState save() const;
   /// The last accepted state, of all bodies.
   EndedMotion motion() const;
+  /// Of all joints there.
+  std::vector<JointMemory> memory() const;
   const Statistics& statistics() const;
   const ClearanceStatistics& clearances() const;
   const RunExtremes& extremes() const;

@@ -15,9 +15,8 @@ import unittest
 from program import PROGRAM, ProgramTest, let_work, mechanism
 
 SUMMARY = ["freeplay", "model", "settings", "status", "stop_reason", "exit_code", "time", "counts", "statistics",
-           "residuals", "bodies", "joints", "drivers", "forces", "paths", "energy", "advice", "verify", "agree_until",
-           "verification",
-           "trust", "noise", "repeat",
+           "residuals", "bodies", "joints", "drivers", "forces", "paths", "memory", "energy", "advice", "verify",
+           "agree_until", "verification", "trust", "noise", "repeat",
            "hashes", "provenance", "twin", "performance", "files", "warnings"]
 FILES = ["checkpoint.bin", "events.csv", "model.yaml", "results.csv", "results.h5", "run.log", "summary.json"]
 EVENTS = ("time,joint,kind,speed,tangential_speed,direction,duration,max_fn,max_delta,steps,"
