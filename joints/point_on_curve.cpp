@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "curve.h"
+#include "curve_check.h"
 #include "freeplay/kit/planar_marker.h"
 #include "freeplay/plugin.h"
 
@@ -24,7 +24,7 @@ using curves::CurveForm;
 class PointOnCurve final : public Joint {
  public:
   explicit PointOnCurve(const Parameters& p)
-      : form_(static_cast<CurveForm>(p.word("form"))), curve_(p.formula("curve"), form_) {}
+      : form_(static_cast<CurveForm>(p.word("form"))), curve_(curves::checked_curve(p.formula("curve"), form_)) {}
 
   void declare(JointLayout& layout) const override {
     static constexpr Channel channels[] = {{"normal_force", "N"}};

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "curve.h"
+#include "curve_check.h"
 #include "freeplay/kit/planar_contacts.h"
 #include "freeplay/plugin.h"
 #include "no_friction.h"
@@ -119,7 +119,7 @@ class PointOnCurveLiftOff final : public PlanarContacts<CurveSide> {
  private:
   static CurveSide read_side(const Parameters& p) {
     const auto form = static_cast<CurveForm>(p.word("form"));
-    return {form, Curve(p.formula("curve"), form), p.word("lift_off.side") == 0 ? 1.0 : -1.0,
+    return {form, curves::checked_curve(p.formula("curve"), form), p.word("lift_off.side") == 0 ? 1.0 : -1.0,
             p.number("lift_off.reach")};
   }
   PointOnCurveLiftOff(const Parameters& p, const CurveSide& side)
