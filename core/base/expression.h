@@ -68,6 +68,11 @@ class FormulaVariables {
   virtual std::string word() const = 0;
   /// What there is, for a hint where no name is near; or empty.
   virtual std::string known() const { return {}; }
+  /// Of a name that is known but cannot stand in the formula: a message id, what is wrong, and a remedy.
+  struct Refusal {
+    std::string id, message, remedy;
+  };
+  virtual std::optional<Refusal> refusal(std::string_view /*name*/) const { return std::nullopt; }
   /// The name that was probably meant, or empty.
   virtual std::string nearest(std::string_view name) const = 0;
 };

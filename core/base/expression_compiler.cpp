@@ -192,10 +192,7 @@ class ExpressionCompiler : ExpressionNames {
     const std::string_view name = text_.substr(begin + 1, close - begin - 1);
     position_ = close + 1;
     const std::optional<FormulaVariable> found = variables_->find(name);
-    if (!found) {
-      fail("unknown-name", begin + 1, close, fmt::format("unknown {} '{}'", variables_->word(), name),
-           variables_->nearest(name));
-    }
+    if (!found) fail_at_variable(name, begin + 1, close);
     return push_variable(*found, begin);
   }
   /// The variable whose name ends at position_.
@@ -210,7 +207,10 @@ class ExpressionCompiler : ExpressionNames {
     if (end + 1 >= text_.size() || text_[end] != '.' || word_end(text_, end + 1) == end + 1) return false;
     return variables_ != nullptr || is_channel_kind(text_.substr(begin, end - begin));
   }
-  static bool is_channel_kind(std::string_view word) { return word == "body" || word == "joint" || word == "frame"; }
+  static bool is_channel_kind(std::string_view word) {
+    constexpr std::array kinds{"body", "joint", "frame", "driver", "force", "energy", "output"};
+    return std::ranges::find(kinds, word) != kinds.end();
+  }
 
   /// Names of things may hold '-' and '/': the longest name that is known counts.
   Operand channel(std::size_t begin) {
@@ -238,11 +238,7 @@ class ExpressionCompiler : ExpressionNames {
         --last;
       } while (last > plain && text_[last] != '-' && text_[last] != '/');
     }
-    if (!found) {
-      const std::string name(text_.substr(begin, plain - begin));
-      fail("unknown-name", begin, plain, fmt::format("unknown {} '{}'", variables_->word(), name),
-           variables_->nearest(name));
-    }
+    if (!found) fail_at_variable(text_.substr(begin, plain - begin), begin, plain);
     position_ = last;
     return push_variable(*found, begin);
   }
@@ -301,7 +297,8 @@ class ExpressionCompiler : ExpressionNames {
     if (name != "t") fail_at_word(name, begin, end);
     if (!time_allowed_) {
       fail("time-not-allowed", begin, end,
-           variables_ == nullptr ? "'t' is not allowed here: the value must be constant" : "'t' is not allowed here");
+           variables_ == nullptr ? "'t' is not allowed here: the value must be constant" : "'t' is not allowed here",
+           {}, variables_ == nullptr ? "" : variables_->known());
     }
     operand.kind = DimensionKind::free;
     operand.depends_on_time = true;

@@ -26,6 +26,16 @@ class ExpressionNames : protected ExpressionOperands {
     return variables_ != nullptr && variables_->plain() ? variables_->find(name) : std::nullopt;
   }
 
+  /// A name of no variable, or of one that cannot stand here.
+  [[noreturn]] void fail_at_variable(std::string_view name, std::size_t begin, std::size_t end) {
+    if (const auto refused = variables_->refusal(name)) {
+      fail(refused->id.c_str(), begin, end, refused->message, {}, refused->remedy);
+    }
+    const std::string meant = variables_->nearest(name);
+    fail("unknown-name", begin, end, fmt::format("unknown {} '{}'", variables_->word(), name), meant,
+         meant.empty() || variables_->plain() ? variables_->known() : std::string());
+  }
+
   /// A word that is no value: says what is missing around it.
   [[noreturn]] void fail_at_word(std::string_view name, std::size_t begin, std::size_t end) {
     fail_if_not_finite_word(begin, begin);
@@ -34,24 +44,22 @@ class ExpressionNames : protected ExpressionOperands {
       fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name));
     }
     if (is_unit_name(name) && !called) {
+      const bool holds = variables_ != nullptr && variables_->plain();
       fail("bad-expression", begin, end, fmt::format("the unit '{}' needs a number before it", name), {},
-           fmt::format("write '1 {}'", name));
+           fmt::format("write '1 {}'{}", name, holds ? "; as variables " + variables_->known() : ""));
     }
     if (scope_.find(name) && !called) {
       fail("bad-expression", begin, end, fmt::format("'{}' is not a number", name), {},
            fmt::format("write '${}' for the parameter", name));
     }
-    if (!called && variables_ != nullptr && variables_->plain()) {
-      fail("unknown-name", begin, end, fmt::format("unknown {} '{}'", variables_->word(), name),
-           variables_->nearest(name), variables_->known());
-    }
+    if (!called && variables_ != nullptr && variables_->plain()) fail_at_variable(name, begin, end);
     std::vector<std::string> known;
     for (const Function& function : functions) known.emplace_back(function.name);
     known.insert(known.end(), {std::string(trapezoid_name), std::string(s_curve_name)});
     if (!called) known.emplace_back("pi");
     fail("bad-expression", begin, end,
          called ? fmt::format("unknown function '{}'", name) : fmt::format("'{}' is not a number", name),
-         suggestion(name, known).value_or(""));
+         suggestion(name, known).value_or(""), called || variables_ == nullptr ? "" : variables_->known());
   }
 
   const Scope& scope_;

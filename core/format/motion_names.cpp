@@ -1,6 +1,8 @@
 #include "format/motion_names.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 
 namespace freeplay {
 namespace {
@@ -20,6 +22,18 @@ constexpr MarkerQuantity marker_quantities[] = {
     {"vz", Of::velocity, 2, false, true},         {"omega", Of::angular_velocity, 2, true, false},
     {"wx", Of::angular_velocity, 0, false, true}, {"wy", Of::angular_velocity, 1, false, true},
     {"wz", Of::angular_velocity, 2, false, true}};
+
+constexpr std::array accelerations_in_plane{"ax", "ay", "alpha"};
+constexpr std::array accelerations_in_space{"ax", "ay", "az", "alphax", "alphay", "alphaz"};
+constexpr std::array loads{"fx", "fy", "fz", "torque", "tx", "ty", "tz", "power", "work", "loss"};
+constexpr std::array energies{"kinetic", "potential", "dissipated", "work", "residual"};
+
+bool holds(std::span<const char* const> words, std::string_view word) {
+  return std::ranges::any_of(words, [&](std::string_view own) { return own == word; });
+}
+
+/// Of a quantity that forces make.
+bool is_unit_of_load(std::string_view unit) { return unit == "N" || unit == "N*m" || unit == "W" || unit == "J"; }
 
 Dimension dimension_of(const MotionChannel& channel, bool turns) {
   switch (channel.of) {
@@ -125,6 +139,59 @@ std::optional<std::string> MotionNames::frame(const std::string& reference) cons
     if (draft_.frames.contains(name)) return name;
   }
   return std::nullopt;
+}
+
+std::optional<MotionNames::Refusal> MotionNames::refusal(std::string_view written) const {
+  const std::string words(written);
+  const std::size_t first = words.find('.');
+  const bool of_output = words.starts_with("output."), of_energy = words.starts_with("energy.");
+  const bool plain_result = of_output || (of_energy && holds(energies, std::string_view(words).substr(first + 1)));
+  const std::optional<Name> name = split(written);
+  if (name && is_acceleration(*name)) {
+    return Refusal{"algebraic-loop",
+                   "'" + words +
+                       "' is an acceleration: a force that depends on the acceleration it makes is defined "
+                       "by itself",
+                   "write it by positions and speeds; what resists an acceleration in proportion is mass: add it to "
+                   "a body"};
+  }
+  if (name && follows_from_forces(*name)) {
+    return Refusal{"algebraic-loop",
+                   "'" + words + "' follows from the forces: one that depends on it is defined by itself",
+                   "write by positions and speeds what it is made of"};
+  }
+  if (!plain_result && !(name && is_result(*name))) return std::nullopt;
+  return Refusal{"state-not-allowed", "'" + words + "' is a result, on which no force can depend", known()};
+}
+
+bool MotionNames::is_acceleration(const Name& name) const {
+  const bool plane = draft_.model.space == Space::planar;
+  const auto quantities = plane ? std::span<const char* const>(accelerations_in_plane) : accelerations_in_space;
+  if (!holds(quantities, name.quantity)) return false;
+  const std::optional<BodyId> body = name.kind == "body" ? draft_.find_body(name.element, part_) : std::nullopt;
+  return (body && *body != ground) || (name.kind == "frame" && frame(name.element));
+}
+
+/// Elements that are not read yet are believed.
+bool MotionNames::follows_from_forces(const Name& name) const {
+  if (name.kind == "force") return holds(loads, name.quantity);
+  if (name.kind == "driver") return holds(loads, name.quantity) || name.quantity == "force";
+  const std::optional<int> joint = name.kind == "joint" ? draft_.find_joint(name.element, part_) : std::nullopt;
+  if (!joint) return false;
+  if (holds(loads, name.quantity)) return true;
+  const Span<const Channel> channels = draft_.model.joints[static_cast<std::size_t>(*joint)].layout.channels;
+  return std::any_of(channels.begin(), channels.end(), [&](const Channel& channel) {
+    return name.quantity == channel.name && is_unit_of_load(channel.unit);
+  });
+}
+
+bool MotionNames::is_result(const Name& name) const {
+  if (name.kind == "force" || name.kind == "driver") return true;
+  const std::optional<int> joint = name.kind == "joint" ? draft_.find_joint(name.element, part_) : std::nullopt;
+  if (!joint) return false;
+  const Span<const Channel> channels = draft_.model.joints[static_cast<std::size_t>(*joint)].layout.channels;
+  return std::any_of(channels.begin(), channels.end(),
+                     [&](const Channel& channel) { return name.quantity == channel.name; });
 }
 
 std::vector<std::string> MotionNames::quantities(const Name& name) const {

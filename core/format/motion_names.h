@@ -21,6 +21,11 @@ class MotionNames final : public ChannelNames {
   std::optional<FormulaVariable> find(std::string_view name) const override;
   std::string word() const override { return "channel"; }
   std::string nearest(std::string_view name) const override;
+  std::string known() const override {
+    return "it may hold t, parameters and channels such as body.NAME.vx, joint.NAME.speed and frame.BODY/FRAME.x";
+  }
+  /// Accelerations and forces, which would make an algebraic loop, and other columns of results.
+  std::optional<Refusal> refusal(std::string_view name) const override;
 
   const std::vector<std::pair<std::string, std::string>>& found() const override { return found_; }
   bool excused() const override { return excused_; }
@@ -34,6 +39,9 @@ class MotionNames final : public ChannelNames {
   std::optional<MotionChannel> of_marker(const std::string& marker, const std::string& quantity) const;
   std::optional<MotionChannel> of_joint(int joint, const std::string& quantity) const;
   std::optional<std::string> frame(const std::string& reference) const;
+  bool is_acceleration(const Name& name) const;
+  bool follows_from_forces(const Name& name) const;
+  bool is_result(const Name& name) const;
   std::vector<std::string> quantities(const Name& name) const;
 
   Draft& draft_;

@@ -6,6 +6,9 @@
 #include <mutex>
 #include <set>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "base/name_pattern.h"
 #include "base/program_lock.h"
@@ -92,15 +95,23 @@ class Asked {
     const auto patterns = by_quantity_.find(quantity);
     if (patterns == by_quantity_.end()) return false;
     const std::string name = prefix + "." + std::string(quantity);
+    if (names_.contains(name)) return true;
     return std::ranges::any_of(patterns->second, [&](std::string_view pattern) { return matches(pattern, name); });
   }
 
  private:
   void note(std::string_view name) {
     const std::size_t dot = name.rfind('.');
-    if (dot != std::string_view::npos) by_quantity_[name.substr(dot + 1)].push_back(name);
+    if (dot == std::string_view::npos) return;
+    std::vector<std::string_view>& patterns = by_quantity_[name.substr(dot + 1)];
+    if (is_pattern(name)) {
+      patterns.push_back(name);
+    } else {
+      names_.insert(name);
+    }
   }
   bool all_;
+  std::unordered_set<std::string_view> names_;
   std::map<std::string_view, std::vector<std::string_view>, std::less<>> by_quantity_;
 };
 
@@ -148,14 +159,28 @@ void Channels::add_asked(const Model& model, bool all) {
   }
 }
 
+/// In the order of the file as columns, and as formulas each after those that it names.
 void Channels::add_formulas(const Model& model) {
-  for (const OutputColumn& column : model.settings.columns) {
-    std::vector<int> places;
-    for (const std::string& channel : column.channels) places.push_back(std::max(find(channel), 0));
-    FormulaColumn& added =
-        formulas.emplace_back(FormulaColumn{add(column.name, kept_unit(column.unit)), column.formula});
-    added.formula.renumber(places);
-  }
+  const std::vector<OutputColumn>& columns = model.settings.columns;
+  if (columns.empty()) return;
+  const std::size_t before = all_.size();
+  for (const OutputColumn& column : columns) add(column.name, kept_unit(column.unit));
+  std::unordered_map<std::string_view, std::size_t> places;
+  for (std::size_t i = 0; i < all_.size(); ++i) places.emplace(all_[i].name, i);
+  std::vector<char> added(columns.size(), 0);
+  const auto add_formula = [&](std::size_t i, const auto& again) -> void {
+    if (std::exchange(added[i], 1) != 0) return;
+    std::vector<int> named;
+    for (const std::string& channel : columns[i].channels) {
+      const auto found = places.find(channel);
+      const std::size_t place = found == places.end() ? 0 : found->second;
+      if (place >= before) again(place - before, again);
+      named.push_back(static_cast<int>(place));
+    }
+    formulas.push_back({static_cast<int>(before + i), columns[i].formula});
+    formulas.back().formula.renumber(named);
+  };
+  for (std::size_t i = 0; i < columns.size(); ++i) add_formula(i, add_formula);
 }
 
 void Channels::fill_formulas(std::span<double> row) const {

@@ -148,6 +148,13 @@ CASES = {
         (3, pendulum("1 kg,", "body.rod.x,"), RUN),
     "unknown channel '...' [unknown-name]":
         (3, pendulum("initial:", "forces: {f: {type: torque, on: rod, value: 1 N*m*s*body.rod.spin}}\ninitial:"), RUN),
+    "'...' is an acceleration: a force that depends on the acceleration it makes is defined by itself [algebraic-loop]":
+        (3, pendulum("initial:", "forces: {f: {type: torque, on: rod, value: 1 N*m*s^2*body.rod.alpha}}\ninitial:"), RUN),
+    "'...' follows from the forces: one that depends on it is defined by itself [algebraic-loop]":
+        (3, pendulum("initial:", "forces: {f: {type: torque, on: rod, value: 1 m*joint.pivot.fx}}\ninitial:"), RUN),
+    "the curve is not closed: ... [bad-curve]":
+        (3, pendulum("  pivot: {type: revolute, between: [ground, rod]}",
+                     "  pivot: {type: point-on-curve, form: polar, between: [ground, rod], curve: 1 m + 0.1 m*x}"), RUN),
     "not valid YAML: ... [yaml-syntax]": (3, pendulum("[0.5 m, 0]", "[0.5 m, 0"), RUN),
     "'radial_clearance' is not 'bearing_radius' minus 'journal_radius' [conflicting-keys]":
         (3, journal("length: 10 mm", "journal_radius: 5 mm"), RUN),
