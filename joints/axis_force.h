@@ -55,6 +55,7 @@ inline constexpr Parameter axis_kind_parameter{.name = "kind",
 ///   stored(s)         potential energy [J]
 ///   stored_rate(s, s')
 ///   doubt(s, slides)  a sentence where s is far outside of what the law is for, else null; a Law may have none
+///   lowest(), highest()  ends of the way of s, of a Law that has them
 template <class Law>
 class AxisForce final : public Joint {
  public:
@@ -65,6 +66,10 @@ class AxisForce final : public Joint {
     layout.forces = 1;
     layout.analytic_derivatives = 1;
     layout.coordinate = slides_ ? Coordinate::position : Coordinate::angle;
+    if constexpr (requires { law_.lowest(); }) {
+      layout.lowest = law_.lowest();
+      layout.highest = law_.highest();
+    }
   }
   void coordinate(const JointInput& in, CoordinateRow& row) const override { write_axis_coordinate(in, slides_, row); }
   void apply(const JointInput& in, JointForces& out) const override {

@@ -31,6 +31,8 @@ class Stops {
   }
   double stored(double s) const { return 0.5 * stiffness_ * depth(s) * depth(s); }
   double stored_rate(double s, double rate) const { return stiffness_ * depth(s) * beyond(s) * rate; }
+  double lowest() const { return lower_; }
+  double highest() const { return upper_; }
   const char* doubt(double s, bool slides) const {
     const double d = depth(s), way = upper_ - lower_;
     const bool far = (way > 0.0 && d > most_ways * way) || (!slides && d > most_turn);
@@ -79,6 +81,8 @@ class ContactStops final : public play::Contacts<play::WayEnds<slides>, play::Al
     Base::declare_contacts(layout);
     layout.clearance = 0.0;  // it holds nothing together
     layout.coordinate = slides ? Coordinate::position : Coordinate::angle;
+    layout.lowest = Base::geometry().lower;
+    layout.highest = Base::geometry().upper;
     layout.forces_without_coordinate = slides ? 1 : 0;
     layout.events = {all_end_events.data(), all_end_events.size()};
     layout.event_roles = {all_end_roles.data(), all_end_roles.size()};

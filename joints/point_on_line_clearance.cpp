@@ -66,6 +66,8 @@ class PointOnLineClearance final : public PlanarContacts<PinInSlot> {
     declare_contacts(layout);
     layout.coordinate = Coordinate::position;
     layout.planar_coordinate = 1;
+    layout.lowest = geometry().first;
+    layout.highest = geometry().last;
     layout.play_shape = PlayShape::walls;
     layout.events = slot_events;
     layout.event_roles = begin_and_end;

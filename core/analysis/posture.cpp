@@ -38,6 +38,12 @@ void put(const Body& body, double px, double py, double x, double y, double angl
 std::string Unreachable::text(const IdealMechanism& mechanism) const {
   const Model& model = mechanism.model();
   if (contradiction) return "no posture has these inputs together";
+  if (beyond >= 0) {
+    const JointElement& joint = model.joints[at(beyond)];
+    const char* unit = joint.ideal_layout.coordinate == Coordinate::angle ? "rad" : "m";
+    return fmt::format("{} '{}' would stand at {:.6g} {}, beyond the end of its way at {:.6g} {}",
+                       joint.is_force ? "force" : "joint", joint.name, place, unit, end, unit);
+  }
   if (input < 0) return "the mechanism does not reach it from its start";
   const std::string& name = model.joints[at(mechanism.platform().inputs[at(input)])].name;
   if (most <= 0.0) return fmt::format("the leg of '{}' does not reach it from its start", name);

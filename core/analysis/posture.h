@@ -28,6 +28,8 @@ struct Unreachable {
   double distance = 0.0;           ///< of a two-link leg's end pins [m]
   double least = 0.0, most = 0.0;  ///< distances that it reaches [m]
   bool contradiction = false;      ///< inputs that no posture fulfils together
+  int beyond = -1;                 ///< a joint that would stand beyond an end of its way (Model::joints)
+  double place = 0.0, end = 0.0;   ///< where it would stand, and that end [rad or m]
   std::string text(const IdealMechanism& mechanism) const;
 };
 

@@ -22,8 +22,10 @@ RequestedStations::RequestedStations(IdealMechanism& mechanism, const AnalysisRe
     : mechanism_(mechanism), request_(request), tick_of_(tick_of) {
   find_freedoms();
   warn_idle_elbow();
+  if (request.kind == AnalysisKind::workspace) ways_ = joint_ways(model());
   find();
   if (request.branches) find_branches();
+  leave_out_ends();
   check_reach();
   check_inputs();
   if (request.kind == AnalysisKind::singularity || request.kind == AnalysisKind::workspace) check_outputs();
@@ -103,6 +105,17 @@ void RequestedStations::find() {
   on_path(section().time.value_or(GridValues{{}, settings.start, settings.end, 101, false}));
 }
 
+/// Postures beyond the end of a joint's way are out of reach.
+void RequestedStations::leave_out_ends() {
+  if (ways_.empty()) return;
+  PostureSolver solver(mechanism_);
+  for (Station& station : stations_) {
+    if (station.reachable) {
+      station.reachable = within_ways(ways_, solver, station.demand.t, station.posture, station.why);
+    }
+  }
+}
+
 void RequestedStations::at_poses() {
   std::vector<Demand> demands;
   for (const AnalysisRequest::Pose& asked : request_.poses) {
@@ -161,8 +174,7 @@ void RequestedStations::on_path(const GridValues& times) {
 }
 
 void RequestedStations::on_axes() {
-  std::array<std::optional<GridValues>, most_components> axes;
-  std::ranges::copy(section().grid, axes.begin());
+  std::array<std::optional<GridValues>, most_components> axes = section().grid;
   for (std::size_t i = 0; i < axes.size(); ++i) {
     if (request_.grid[i]) axes[i] = request_.grid[i];
   }
@@ -170,15 +182,15 @@ void RequestedStations::on_axes() {
   for (std::size_t i = 0; i < form().size(); ++i) written[i] = axes[i].has_value();
   if (count(written) == 0 && model().space == Space::spatial) {
     throw Error(Error::Category::usage, "missing-argument", "no poses are known", {},
-                "--pose, --grid x=FROM:TO:COUNT, --time or --input");
+                "--pose, --grid x=FROM:TO:COUNT, --time or --input, or 'grid' in the section 'analysis'");
   }
   if (count(written) == 0) {
     throw Error(Error::Category::input, "missing-key", "no poses are known: 'analysis' needs 'grid'",
                 {model().file, 0, 0}, "or --grid x=FROM:TO:COUNT, --pose, --time or --input");
   }
   const bool from_options = request_.asks_for_grid();
-  given_ = components_to_give(form(), freedoms_, written, "the grid",
-                              from_options ? Location{} : Location{model().file, 0, 0});
+  const Location in_file = section().grid_location.value_or(Location{model().file, 0, 0});
+  given_ = components_to_give(form(), freedoms_, written, "the grid", from_options ? Location{} : in_file);
   double points = 1.0;
   for (std::size_t i = 0; i < form().size(); ++i) {
     axes_[i] = axes[i].value_or(GridValues::one(0.0));
@@ -186,11 +198,10 @@ void RequestedStations::on_axes() {
   }
   if (points > static_cast<double>(most_points)) {
     throw Error(from_options ? Error::Category::usage : Error::Category::input, "too-large",
-                "the grid of an analysis has at most 10^6 points",
-                from_options ? Location{} : Location{model().file, 0, 0});
+                "the grid of an analysis has at most 10^6 points", from_options ? Location{} : in_file);
   }
   stations_ = on_grid(mechanism_, std::span(axes_).first(form().size()), given_, request_.threads,
-                      tick_of_("poses found", static_cast<std::size_t>(points)));
+                      tick_of_("poses found", static_cast<std::size_t>(points)), ways_);
   on_grid_ = true;
 }
 
@@ -201,7 +212,7 @@ Components RequestedStations::default_components() {
   const int wanted = std::min(freedoms_, form().freedoms());
   if (count(path) == wanted) return path;
   Components grid{};
-  for (std::size_t i = 0; i < section().grid.size(); ++i) grid[i] = section().grid[i].has_value();
+  for (std::size_t i = 0; i < grid.size(); ++i) grid[i] = section().grid[i].has_value();
   if (count(grid) == wanted) return grid;
   Components first{};
   for (int i = 0; i < wanted; ++i) first[static_cast<std::size_t>(i)] = true;

@@ -45,6 +45,7 @@ class RequestedStations {
   void on_path(const GridValues& times);
   void on_axes();
   Components default_components();
+  void leave_out_ends();
   void check_reach();
   void find_branches();
 
@@ -54,6 +55,7 @@ class RequestedStations {
   std::optional<GeneralMobility> mobility_;
   int freedoms_ = 3;  // of the platform
   Components given_{true, true, true};
+  std::vector<JointWay> ways_;  ///< that postures keep to
   std::vector<Station> stations_;
   std::vector<int> branch_of_;
   std::array<GridValues, most_components> axes_;

@@ -41,8 +41,13 @@ Demand path_demand(IdealMechanism& mechanism, double t) {
 class GridFlood {
  public:
   GridFlood(IdealMechanism& mechanism, const Components& given, std::span<const GridValues> axes,
-            std::vector<Station>& stations, const Tick& tick)
-      : tick_(tick), solver_(mechanism), start_(regular_start(mechanism, given)), axes_(axes), stations_(stations) {}
+            std::vector<Station>& stations, const Tick& tick, std::span<const JointWay> ways)
+      : tick_(tick),
+        solver_(mechanism),
+        start_(regular_start(mechanism, given)),
+        axes_(axes),
+        stations_(stations),
+        ways_(ways) {}
 
   void run() {
     // From the start to the point next to it that can be reached; further points only if all nearer ones fail.
@@ -73,6 +78,9 @@ class GridFlood {
     Station& station = stations_[index];
     station.reachable = solver_.reach(station.demand, from, station.posture, station.why);
     station.folded = solver_.folded();
+    if (station.reachable && !ways_.empty()) {
+      station.reachable = within_ways(ways_, solver_, station.demand.t, station.posture, station.why);
+    }
     if (tick_) tick_(station.reachable ? 1 : 0);
     if (station.reachable && !station.folded) open_.push_back(index);
   }
@@ -93,6 +101,7 @@ class GridFlood {
   Posture start_;
   std::span<const GridValues> axes_;
   std::vector<Station>& stations_;
+  std::span<const JointWay> ways_;
   std::deque<std::size_t> open_;
 };
 
@@ -166,7 +175,7 @@ std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& tim
 }
 
 std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValues> axes, const Components& given,
-                             int threads, const Tick& tick) {
+                             int threads, const Tick& tick, std::span<const JointWay> ways) {
   long points = 1;
   for (const GridValues& axis : axes) points *= axis.count;
   std::vector<Station> stations;
@@ -183,7 +192,7 @@ std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValu
     }
   }
   if (!mechanism.closed_form() || count(given) < 3) {
-    GridFlood(mechanism, given, axes, stations, tick).run();
+    GridFlood(mechanism, given, axes, stations, tick, ways).run();
     return stations;
   }
   in_parallel(stations.size(), threads, tick, [&](int, std::size_t first, std::size_t last) {

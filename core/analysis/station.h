@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "analysis/joint_way.h"
 #include "analysis/posture.h"
 #include "model/grid_values.h"
 
@@ -38,9 +39,10 @@ std::vector<Station> at_demands(IdealMechanism& mechanism, const std::vector<Dem
 std::vector<Station> along_path(IdealMechanism& mechanism, const GridValues& times, const Tick& tick = {});
 
 /// `axes`: of each number of a pose; the first slowest. Where all has a closed form every point stands by itself; else
-/// points are reached from their neighbours, beginning next to the start. The result does not depend on `threads`.
+/// points are reached from their neighbours, beginning next to the start, where no joint leaves one of `ways`. The
+/// result does not depend on `threads`.
 std::vector<Station> on_grid(IdealMechanism& mechanism, std::span<const GridValues> axes, const Components& given,
-                             int threads, const Tick& tick = {});
+                             int threads, const Tick& tick = {}, std::span<const JointWay> ways = {});
 
 /// Calls work(worker, first, last) for pieces of 0 .. count, `threads` at a time, `worker` being the number of the
 /// piece, and tick(0) now and then while the caller waits for others. Rethrows the first exception by piece.

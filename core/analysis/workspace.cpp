@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "analysis/joint_way.h"
 #include "base/error.h"
 
 namespace freeplay {
@@ -75,34 +76,59 @@ Demand between(const Demand& a, const Demand& b, double s) {
   return out;
 }
 
-/// Share of the way from a reachable station to a demand out of reach at which reach ends.
-double end_of_reach(PostureSolver& solver, const Demand& good, const Posture& at_good, const Demand& bad) {
-  double inside = 0.0, outside = 1.0;
-  Posture here = at_good, trial;
-  Unreachable why;
-  while (outside - inside > 1e-9) {
-    const double middle = 0.5 * (inside + outside);
-    if (solver.reach(between(good, bad, middle), here, trial, why)) {
-      inside = middle;
-      here = trial;
-    } else {
-      outside = middle;
-    }
-  }
-  return inside;
-}
+/// Looks for where reach ends between a station in reach and a demand that is not.
+class ReachEnd {
+ public:
+  /// `follows`: no part of the mechanism stands by itself.
+  ReachEnd(IdealMechanism& mechanism, bool follows)
+      : solver_(mechanism), ways_(joint_ways(mechanism.model())), follows_(follows) {}
 
-/// The same where no part stands by itself, to two millionths: where the way that is followed ends.
-double end_of_way(PostureSolver& solver, const Demand& good, const Posture& at_good, const Demand& bad) {
-  double last = 0.0;
-  Posture trial;
-  Unreachable why;
-  const auto way = [&](double share) {
-    if (share < 1.0) last = share;
-    return between(good, bad, share);
-  };
-  return solver.reach(way, at_good, trial, why) ? 1.0 : last;
-}
+  PostureSolver& solver() { return solver_; }
+
+  /// The share of the way at which it ends, by its legs or by an end of a joint's way.
+  double share(const Demand& good, const Posture& at_good, const Demand& bad) {
+    if (!follows_) return halved(good, at_good, bad, 1.0);
+    const double end = end_of_way(good, at_good, bad);
+    Posture there;
+    return holds(between(good, bad, end), at_good, there) ? end : halved(good, at_good, bad, end);
+  }
+  /// The posture for a demand, from another; false where it is out of reach.
+  bool holds(const Demand& demand, const Posture& from, Posture& to) {
+    Unreachable why;
+    return solver_.reach(demand, from, to, why) && within_ways(ways_, solver_, demand.t, to, why);
+  }
+
+ private:
+  double halved(const Demand& good, const Posture& at_good, const Demand& bad, double outside) {
+    double inside = 0.0;
+    Posture here = at_good, trial;
+    while (outside - inside > 1e-9) {
+      const double middle = 0.5 * (inside + outside);
+      if (holds(between(good, bad, middle), here, trial)) {
+        inside = middle;
+        here = trial;
+      } else {
+        outside = middle;
+      }
+    }
+    return inside;
+  }
+  /// Where the way that is followed ends, to two millionths.
+  double end_of_way(const Demand& good, const Posture& at_good, const Demand& bad) {
+    double last = 0.0;
+    Posture trial;
+    Unreachable why;
+    const auto way = [&](double share) {
+      if (share < 1.0) last = share;
+      return between(good, bad, share);
+    };
+    return solver_.reach(way, at_good, trial, why) ? 1.0 : last;
+  }
+
+  PostureSolver solver_;
+  std::vector<JointWay> ways_;
+  bool follows_;
+};
 
 }  // namespace
 
@@ -132,15 +158,14 @@ WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Stat
   const Cells cells(stations, counts);
   shape.regions = cells.regions(true).first;
   shape.holes = cells.regions(false).second;
-  PostureSolver solver(mechanism);
   const std::size_t numbers = mechanism.form().lengths;
-  const bool follows =
-      numbers == 3 && !stations.empty() && count(stations.front().demand.given) < mechanism.form().freedoms();
+  ReachEnd end_of_reach(mechanism, numbers == 3 && !stations.empty() &&
+                                       count(stations.front().demand.given) < mechanism.form().freedoms());
   for (std::size_t i = 0; i < stations.size(); ++i) {
     const Station& station = stations[i];
     if (tick) tick(1);
     if (station.reachable) {
-      const FramePose here = solver.frame(station.posture);
+      const FramePose here = end_of_reach.solver().frame(station.posture);
       shape.bounds.resize(numbers, {infinity, -infinity});
       for (std::size_t k = 0; k < numbers; ++k) {
         const double x = station.demand.given[k] ? station.demand.pose[k].value : here[k];
@@ -153,7 +178,7 @@ WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Stat
       if (station.reachable == other.reachable) return;
       const Station& good = station.reachable ? station : other;
       const Station& bad = station.reachable ? other : station;
-      const double share = (follows ? end_of_way : end_of_reach)(solver, good.demand, good.posture, bad.demand);
+      const double share = end_of_reach.share(good.demand, good.posture, bad.demand);
       const Demand end = between(good.demand, bad.demand, share);
       std::vector<double>& point = shape.boundary.emplace_back();
       for (std::size_t k = 0; k < numbers; ++k) point.push_back(end.pose[k].value);
@@ -163,7 +188,8 @@ WorkspaceShape workspace_shape(IdealMechanism& mechanism, const std::vector<Stat
 }
 
 double reach_in_direction(IdealMechanism& mechanism, const FramePose& pose, double angle, double longest) {
-  PostureSolver solver(mechanism);
+  ReachEnd end_of_reach(mechanism, false);
+  PostureSolver& solver = end_of_reach.solver();
   Demand demand;
   demand.t = mechanism.model().settings.start;
   demand.given = {true, true, true};
@@ -182,11 +208,11 @@ double reach_in_direction(IdealMechanism& mechanism, const FramePose& pose, doub
       return out;
     };
     const Demand to = ahead(longest * i / pieces);
-    if (solver.reach(to, posture, next, why)) {
+    if (end_of_reach.holds(to, posture, next)) {
       posture = next;
       continue;
     }
-    const double share = end_of_reach(solver, ahead(longest * (i - 1) / pieces), posture, to);
+    const double share = end_of_reach.share(ahead(longest * (i - 1) / pieces), posture, to);
     return longest * (i - 1 + share) / pieces;
   }
   return longest;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "base/error.h"
+#include "format/analysis_keys.h"
 
 namespace freeplay {
 namespace {
@@ -249,29 +250,6 @@ constexpr FormatKey stop[] = {
     {"below", "quantity", "of the channel", "", "Ends the run when the channel is below.", "0 m"},
     {"after", "quantity", "s", "", "Not before this time.", "1 ms"}};
 
-constexpr FormatKey analysis[] = {
-    {"frame", "frame", "", "that of the inverse kinematics", "The platform.", "platform"},
-    {"joints", "name | list of name", "", "those of the inverse kinematics", "The inputs.", "leg*.A"},
-    {"elbow", "integer | list of integer", "", "that of the inverse kinematics", "Working modes.", "1"},
-    {"path", "text | map path", "", "that of the inverse kinematics", "Path of the frame.",
-     "{x: 0.1*t, y: 0, angle: 0}"},
-    {"time", "grid", "s", "the run, 101 points", "Instants on the path.", "{linspace: [0, 1, 101]}"},
-    {"grid", "map pose_grid", "", "", "Poses.", "{x: {linspace: [0, 0.1, 11]}, y: 0}"},
-    {"error", "map error", "", "", "Play that is looked at.", "{input: 0.1 deg}"}};
-
-constexpr FormatKey pose_grid[] = {{"x", "grid", "m", "", "Of the frame.", "{linspace: [0, 0.1, 11]}"},
-                                   {"y", "grid", "m", "", "Of the frame.", "[0, 0.05]"},
-                                   {"angle", "grid", "rad", "0", "Of the frame.", "10 deg"}};
-
-constexpr FormatKey grid[] = {
-    {"linspace", "list of quantity", "", "", "First value, last value, number of points.", "[0, 1, 11]"},
-    {"logspace", "list of quantity", "", "", "First value, last value, number of points.", "[0.01, 1, 3]"},
-    {"list", "list of quantity", "", "", "Values.", "[0, 0.5, 2]"}};
-
-constexpr FormatKey error[] = {
-    {"clearance", "entries of quantity", "m", "that of each joint", "Radius of the play by joint.", "{leg1.B: 0.1 mm}"},
-    {"input", "quantity", "rad", "0", "Error of each driven joint.", "0.1 deg"}};
-
 constexpr FormatKey study[] = {
     {"name", "text", "", "the name of the file", "Of the study.", "clearances"},
     {"description", "text", "", "", "For people.", "'Play against speed'"},
@@ -418,10 +396,11 @@ constexpr FormatMap maps[] = {
     {"integrator", "simulation.integrator", "Integrator and its parameters.", integrator},
     {"output", "simulation.output", "Results.", output},
     {"stop", "simulation.stop", "A condition that ends the run.", stop},
-    {"analysis", "analysis", "Analyses of the ideal mechanism.", analysis},
-    {"pose_grid", "analysis.grid", "Poses of the platform.", pose_grid},
-    {"error", "analysis.error", "Play and input errors.", error},
-    {"grid", "where a grid may stand", "Values of one quantity. A list or a single value will do as well.", grid},
+    {"analysis", "analysis", "Analyses of the ideal mechanism.", analysis_keys::analysis},
+    {"pose_grid", "analysis.grid", "Poses of the platform.", analysis_keys::pose_grid},
+    {"error", "analysis.error", "Play and input errors.", analysis_keys::error},
+    {"grid", "where a grid may stand", "Values of one quantity. A list or a single value will do as well.",
+     analysis_keys::grid},
     {"study", "study", "Many runs of one model or several, see docs/studies.md.", study},
     {"study axis", "study.axes.NAME", "What changes from point to point. Values alone will do as well.", study_axis},
     {"study sample", "study.sample", "How random axes are drawn.", study_sample},

@@ -199,13 +199,20 @@ struct Settings {
 
 /// The section `analysis`; what it does not say is empty.
 struct AnalysisSection {
+  /// Ends of the way of a joint [rad or m].
+  struct Ends {
+    int joint = 0;
+    double lowest = 0.0, highest = 0.0;
+  };
   std::optional<Location> frame_location, joints_location, elbow_location, path_location;
   int marker = 0;                                 ///< the platform, if frame_location is given
   std::vector<int> joints;                        ///< the inputs, if joints_location is given
   std::vector<int> elbow;                         ///< one for all inputs, or one each, if elbow_location is given
   FramePath path;                                 ///< if path_location is given
   std::optional<GridValues> time;                 ///< [s]
-  std::array<std::optional<GridValues>, 3> grid;  ///< x, y [m], angle [rad]
+  std::array<std::optional<GridValues>, 6> grid;  ///< by number of a pose: x, y [m], angle; in space as PoseForm says
+  std::optional<Location> grid_location;          ///< of the key
+  std::vector<Ends> limits;
   std::vector<std::pair<int, double>> clearance;  ///< joint and radius [m], in place of the joint's own
   double input = 0.0;                             ///< error of each input [rad or m]
   Location input_location;

@@ -143,11 +143,12 @@ class AnalyzeInSpace(ProgramTest):
         for words, what in ((["ik", "stewart.yaml", "--pose", "0,0,0.6", "--branches"], "--branches"),
                             (["ik", "stewart.yaml", "--pose", "0,0,0.6", "--elbow", "1"], "--elbow")):
             self.assertIn(what + " works on planar models only, but 'stewart.yaml' is spatial [type-space]", self.message(*words, code=3))
-        for key in ("grid: {x: [0, 1]}", "elbow: 1"):
+        for key, place, says in (("elbow: 1", 29, "working modes work in planar models only"),
+                                 ("grid: {x: [0, 1], angle: 0}", 47, "'angle' is no number of a pose in space, which has x, y, z, roll, pitch, yaw")):
             self.write("refused.yaml", stewart().replace("frame: platform,", "frame: platform, %s," % key))
             err = self.message("error", "refused.yaml", "--pose", "0,0,0.6", code=3)
-            self.assertIn("refused.yaml:%d:29: error" % len(stewart().splitlines()), err)
-            self.assertIn("work in planar models only [type-space]", err)
+            self.assertIn("refused.yaml:%d:%d: error" % (len(stewart().splitlines()), place), err)
+            self.assertIn(says + " [type-space]", err)
 
     def test_poses_in_space_have_their_own_words(self):
         self.assertIn("no poses are known [missing-argument]", self.message("error", "stewart.yaml", code=2))

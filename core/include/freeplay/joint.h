@@ -140,6 +140,9 @@ struct JointLayout {
   Span<const double> play_bounds;
   /// Spatial models, nonzero: the way that free_distance() promises is seen from a, and turns count by free_levers().
   std::uint32_t free_turns = 0;
+  /// Ends of the way of the coordinate, beyond which the joint pushes back; infinite without ends. Analyses leave out
+  /// what lies beyond [rad or m].
+  double lowest = -std::numeric_limits<double>::infinity(), highest = std::numeric_limits<double>::infinity();
 };
 
 /// Everything a joint may read. All views are valid during the call only.
