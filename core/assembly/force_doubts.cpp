@@ -6,7 +6,9 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <set>
 #include <tuple>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -27,7 +29,15 @@ class ForceDoubts {
  public:
   using Doubt = std::function<void(const char*, const std::string&, const JointElement&)>;
   ForceDoubts(const System& system, const Evaluation& at_start, const Doubt& doubt)
-      : system_(system), model_(system.model()), at_start_(at_start), doubt_(doubt) {}
+      : system_(system),
+        model_(system.model()),
+        at_start_(at_start),
+        doubt_(doubt),
+        joints_of_(model_.bodies.size()),
+        driven_(model_.joints.size(), 0) {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) list_at_bodies(j);
+    for (const Driver& driver : model_.drivers) driven_[at(driver.joint)] = 1;
+  }
 
   void run() const {
     for (const JointElement& joint : model_.joints) {
@@ -52,6 +62,23 @@ class ForceDoubts {
   static double number(const JointElement& joint, const char* name) {
     const auto found = joint.parameters->values.find(name);
     return found == joint.parameters->values.end() ? std::nan("") : found->second.number;
+  }
+
+  /// A gear with the bodies of the joints that it couples.
+  void list_at_bodies(int j) {
+    const JointElement& joint = model_.joints[at(j)];
+    std::set<BodyId> bodies;
+    if (joint.gear < 0) {
+      bodies = {body_of(joint.marker_a), body_of(joint.marker_b)};
+    } else {
+      for (const int coupled : {model_.gears[at(joint.gear)].first, model_.gears[at(joint.gear)].second}) {
+        bodies.insert(body_of(model_.joints[at(coupled)].marker_a));
+        bodies.insert(body_of(model_.joints[at(coupled)].marker_b));
+      }
+    }
+    for (const BodyId body : bodies) {
+      if (body != ground) joints_of_[at(body)].push_back(j);
+    }
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
@@ -134,18 +161,32 @@ class ForceDoubts {
   static bool same_numbers(const ParameterBlock& one, const ParameterBlock& other) {
     return std::ranges::equal(one.values, other.values, [](const auto& a, const auto& b) {
       const ParameterValue &x = a.second, &y = b.second;
-      const bool plain = !x.law && !y.law && !x.function_owner && !y.function_owner;
       const bool same = x.number == y.number || (std::isnan(x.number) && std::isnan(y.number));
-      return a.first == b.first && plain && same && x.word == y.word && x.vector == y.vector;
+      return a.first == b.first && same && x.word == y.word && x.vector == y.vector;
     });
+  }
+  /// Laws, functions, lists and tables are not compared.
+  static bool is_plain(const ParameterBlock& block) {
+    return std::ranges::none_of(block.values, [](const auto& entry) {
+      const ParameterValue& value = entry.second;
+      return value.law != nullptr || value.function_owner != nullptr || value.points != nullptr;
+    });
+  }
+  static double sum_of_numbers(const ParameterBlock& block) {
+    double sum = 0.0;
+    for (const auto& [name, value] : block.values) {
+      if (std::isfinite(value.number)) sum += value.number;
+    }
+    return sum;
   }
 
   void judge_pairs() const {
-    std::map<std::tuple<const Component*, int, int>, std::vector<const JointElement*>> alike;
+    std::map<std::tuple<const Component*, int, int, double>, std::vector<const JointElement*>> alike;
     for (const JointElement& joint : model_.joints) {
-      if (!joint.is_force || !joint.parameters) continue;
+      if (!joint.is_force || !joint.parameters || !is_plain(*joint.parameters)) continue;
       const auto [low, high] = std::minmax(joint.marker_a, joint.marker_b);
-      std::vector<const JointElement*>& others = alike[{joint.parameters->component, low, high}];
+      std::vector<const JointElement*>& others =
+          alike[{joint.parameters->component, low, high, sum_of_numbers(*joint.parameters)}];
       const auto same = std::ranges::find_if(
           others, [&](const JointElement* other) { return same_numbers(*other->parameters, *joint.parameters); });
       if (same == others.end()) {
@@ -204,18 +245,16 @@ class ForceDoubts {
   std::optional<Hold> hold_of(BodyId body) const {
     const Vector3& gravity = model_.bodies[at(body)].gravity;
     Hold hold{.along = std::hypot(gravity[0], gravity[1], gravity[2])};
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+    for (const int j : joints_of_[at(body)]) {
       const JointElement& joint = model_.joints[at(j)];
-      if (joint.gear >= 0 && couples(joint.gear, body)) return std::nullopt;
-      if (joint.gear >= 0 || (body_of(joint.marker_a) != body && body_of(joint.marker_b) != body)) continue;
+      if (joint.gear >= 0) return std::nullopt;
       if (joint.is_force && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
       const double k = joint.is_force && joint.parameters ? number(joint, "stiffness") : std::nan("");
       if (joint.is_force && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
         add_spring(hold, joint, k, body);
       } else if (joint.is_force && (k == 0.0 || number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
-      } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) &&
-                 std::ranges::count(model_.drivers, j, &Driver::joint) == 0) {
+      } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) && driven_[at(j)] == 0) {
         const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
         hold.along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
       } else {
@@ -247,18 +286,12 @@ class ForceDoubts {
     return body_of(joint.marker_a) == ground || body_of(joint.marker_b) == ground;
   }
 
-  bool couples(int gear, BodyId body) const {
-    for (const int j : {model_.gears[at(gear)].first, model_.gears[at(gear)].second}) {
-      const JointElement& joint = model_.joints[at(j)];
-      if (body_of(joint.marker_a) == body || body_of(joint.marker_b) == body) return true;
-    }
-    return false;
-  }
-
   const System& system_;
   const Model& model_;
   const Evaluation& at_start_;
   const Doubt& doubt_;
+  std::vector<std::vector<int>> joints_of_;  ///< by body, in their order
+  std::vector<char> driven_;                 ///< by joint
 };
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "assembly/placing.h"
 
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <vector>
 
 #include <fmt/format.h>
@@ -89,7 +91,15 @@ class Walk {
         model_(closed.model()),
         coordinates_(coordinates),
         frames_(model_.bodies.size()),
-        placed_(model_.bodies.size(), 0) {}
+        placed_(model_.bodies.size(), 0),
+        joints_of_(model_.bodies.size()) {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      for (const int m : {model_.joints[at(j)].marker_a, model_.joints[at(j)].marker_b}) {
+        if (marker(m).body != ground) joints_of_[at(marker(m).body)].push_back(j);
+      }
+      next_.push(j);
+    }
+  }
 
   void run() {
     place_paths();
@@ -97,8 +107,7 @@ class Walk {
       const Body& body = model_.bodies[b];
       if (!placed_[b] && body.position) put(static_cast<int>(b), Frame::guess(body));
     }
-    while (place_next()) {
-    }
+    place_others();
     for (std::size_t b = 0; b < frames_.size(); ++b) {
       if (!placed_[b]) frames_[b] = Frame::guess(model_.bodies[b]);
     }
@@ -154,14 +163,17 @@ class Walk {
     put(body, {x - c * pin_x + s * pin_y, y - s * pin_x - c * pin_y, angle});
   }
 
-  bool place_next() {
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+  /// By the first joint of which one end is placed; those of a body come up again when it is.
+  void place_others() {
+    for (; !next_.empty();) {
+      const int j = next_.top();
+      next_.pop();
       const JointElement& joint = model_.joints[at(j)];
       const BodyId a = marker(joint.marker_a).body, b = marker(joint.marker_b).body;
-      if (placed(a) == placed(b)) continue;
-      if (place_by(j, placed(a))) return true;
+      if (placed(a) == placed(b) || !place_by(j, placed(a))) continue;
+      const BodyId body = marker(placed_last_).body;
+      for (const int other : joints_of_[at(body)]) next_.push(other);
     }
-    return false;
   }
 
   // Places the body at the free end of a joint; false when its type cannot. What exerts forces alone holds nothing.
@@ -186,6 +198,7 @@ class Walk {
     const BodyId body = marker(far).body;
     Frame::turn_as_given(model_.bodies[at(body)], marker(far), end);
     put(body, end * inverse(mount(far)));
+    placed_last_ = far;
     return true;
   }
 
@@ -194,6 +207,9 @@ class Walk {
   std::span<const double> coordinates_;
   std::vector<Frame> frames_;
   std::vector<char> placed_;
+  std::vector<std::vector<int>> joints_of_;                          ///< by body
+  std::priority_queue<int, std::vector<int>, std::greater<>> next_;  ///< joints that may place a body
+  int placed_last_ = -1;                                             ///< a marker of the body
 };
 
 }  // namespace

@@ -105,17 +105,24 @@ std::string moved_text(const Model& model, const StartReport& report) {
 
 Json start_json(const Model& model, const Start& start) {
   Json json = Json::object();
+  // Names of bodies differ: none need be looked for before one is added.
+  auto& bodies = json.get_ref<Json::object_t&>();
   const System system(model);
   for (std::size_t i = 0; i < model.bodies.size(); ++i) {
     if (model.space == Space::spatial) {
       const std::span<const double> pose = start.state.q().subspan(7 * i, 7);
       const std::array<double, 4> turn = system.coordinates().frame_quaternion(static_cast<BodyId>(i), start.state.q());
-      json[model.bodies[i].name] = {{"x", pose[0]},  {"y", pose[1]},  {"z", pose[2]}, {"qw", turn[0]},
-                                    {"qx", turn[1]}, {"qy", turn[2]}, {"qz", turn[3]}};
+      bodies.emplace_back(model.bodies[i].name, Json{{"x", pose[0]},
+                                                     {"y", pose[1]},
+                                                     {"z", pose[2]},
+                                                     {"qw", turn[0]},
+                                                     {"qx", turn[1]},
+                                                     {"qy", turn[2]},
+                                                     {"qz", turn[3]}});
       continue;
     }
     const std::span<const double> pose = start.state.q().subspan(3 * i, 3);
-    json[model.bodies[i].name] = {{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}};
+    bodies.emplace_back(model.bodies[i].name, Json{{"x", pose[0]}, {"y", pose[1]}, {"angle", pose[2]}});
   }
   return json;
 }
