@@ -11,6 +11,7 @@
 #include "assembly/loop_gap.h"
 #include "base/error.h"
 #include "base/index.h"
+#include "model/path_pose.h"
 
 namespace freeplay {
 namespace {
@@ -26,6 +27,26 @@ void refuse_open_path(const ClosedMechanism& mechanism, const ClosedMechanism::R
                             entry.name, mechanism.state.t()),
                 entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
   }
+}
+
+/// "; the path of 'tool' begins at x = 1 m, y = 0 m", of every path.
+std::string begin_of_paths(const ClosedMechanism& mechanism) {
+  const Model& model = mechanism.model();
+  const std::size_t lengths = model.space == Space::spatial ? 3 : 2;
+  std::string text;
+  for (std::size_t k = 0; k < model.kinematics.size(); ++k) {
+    const InverseKinematics& entry = model.kinematics[k];
+    PathPose pose;
+    MotionFault ignored;
+    if (!mechanism.system.motions().path(static_cast<int>(k), model.settings.start, pose, ignored)) continue;
+    std::string place;
+    for (std::size_t i = 0; i < lengths; ++i) {
+      if (!entry.path.gives(i)) continue;
+      place += fmt::format("{} {} = {:.6g} m", place.empty() ? "" : ",", path_words(model.space)[i], pose[i].value);
+    }
+    if (!place.empty()) text += fmt::format("; the path of '{}' begins at{}: is that within reach?", entry.name, place);
+  }
+  return text;
 }
 
 }  // namespace
@@ -73,6 +94,7 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     location = joint.location;
   }
   if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
+  text += begin_of_paths(mechanism);
   throw Error(
       Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
       model.space == Space::spatial
