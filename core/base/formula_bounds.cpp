@@ -106,6 +106,90 @@ void FormulaBounds::bound_in(const Span& span, Bounds& out, std::span<Bounds> sw
   out = {ranges[0], middles[0]};
 }
 
+Interval FormulaBounds::values(std::span<const Interval> ranges, const Interval& time) const noexcept {
+  return formula_.expression_.stack_depth_ <= usual_operands ? values_in<usual_operands>(ranges, time)
+                                                             : values_in<most_operands>(ranges, time);
+}
+
+template <int depth>
+Interval FormulaBounds::values_in(std::span<const Interval> ranges, const Interval& time) const noexcept {
+  Interval operands[depth];
+  std::size_t top = 0;  // one past the last operand
+  for (const Expression::Instruction& instruction : formula_.expression_.program_) {
+    const std::size_t first = top - static_cast<std::size_t>(Expression::operand_count(instruction.operation));
+    Interval* const x = operands + first;
+    top = first + 1;
+    if (instruction.operation == Operation::push_constant) {
+      *x = Interval::at(instruction.constant);
+    } else if (instruction.operation == Operation::push_time) {
+      *x = time;
+    } else if (instruction.operation == Operation::push_variable) {
+      *x = ranges[static_cast<std::size_t>(instruction.constant)];
+    } else {
+      *x = value_of(instruction, x);
+    }
+  }
+  return operands[0];
+}
+
+Interval FormulaBounds::value_of(const Expression::Instruction& instruction, const Interval* x) noexcept {
+  switch (instruction.operation) {
+    case Operation::negate:
+      return -x[0];
+    case Operation::add:
+      return x[0] + x[1];
+    case Operation::subtract:
+      return x[0] - x[1];
+    case Operation::multiply:
+      return x[0] * x[1];
+    case Operation::divide:
+      return x[0] / x[1];
+    case Operation::power_constant:
+      return pow(x[0], instruction.constant);
+    case Operation::sine:
+      return sin(x[0]);
+    case Operation::cosine:
+      return cos(x[0]);
+    case Operation::exponential:
+      return exp(x[0]);
+    case Operation::absolute:
+    case Operation::sign:
+    case Operation::minimum:
+    case Operation::maximum:
+    case Operation::choose:
+      return chosen(instruction, x);
+    case Operation::arctangent2:
+      if (x[0].contains(0.0) && x[1].low <= 0.0) return {-M_PI, M_PI};
+      break;
+    default:
+      break;
+  }
+  constexpr std::size_t most = 4;
+  IntervalJet jets[most];
+  const auto count = static_cast<std::size_t>(Expression::operand_count(instruction.operation));
+  for (std::size_t k = 0; k < count; ++k) jets[k] = {x[k], Interval::whole(), Interval::whole()};
+  return range_of(instruction, jets).value;
+}
+
+// Of what has two forms: both where its operands leave it open.
+Interval FormulaBounds::chosen(const Expression::Instruction& instruction, const Interval* x) noexcept {
+  switch (instruction.operation) {
+    case Operation::absolute:
+      return x[0].low >= 0.0 ? x[0] : x[0].high <= 0.0 ? -x[0] : Interval{0.0, std::max(-x[0].low, x[0].high)};
+    case Operation::sign:
+      return {x[0].low > 0.0 ? 1.0 : -1.0, x[0].high < 0.0 ? -1.0 : 1.0};
+    case Operation::minimum:
+      return {std::min(x[0].low, x[1].low), std::min(x[0].high, x[1].high)};
+    case Operation::maximum:
+      return {std::max(x[0].low, x[1].low), std::max(x[0].high, x[1].high)};
+    default:
+      break;
+  }
+  const Interval margin = Expression::margin(instruction.comparison(), x[0], x[1]);
+  if (margin.low > 0.0) return x[2];
+  return margin.high < 0.0 ? x[3] : hull(x[2], x[3]);
+}
+
 IntervalJet FormulaBounds::range_of(const Expression::Instruction& instruction, const IntervalJet* x) noexcept {
   if (instruction.operation == Operation::smooth) return smooth(x[0], x[1], x[2]);
   if (instruction.operation == Operation::arctangent2) return atan2(x[0], x[1]);

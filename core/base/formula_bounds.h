@@ -38,11 +38,17 @@ class FormulaBounds {
   /// Of the formula and of what decides its switches. Where no side is given, and the values leave it open, both forms
   /// count.
   void bound(const Span& span, Bounds& out, std::span<Bounds> switches) const noexcept;
+  /// The values that it can come to where variables and time stay in these ranges: wider than bound(), and sooner done.
+  Interval values(std::span<const Interval> ranges, const Interval& time) const noexcept;
 
  private:
   using Operation = Expression::Operation;
   template <int depth>
   void bound_in(const Span& span, Bounds& out, std::span<Bounds> switches) const noexcept;
+  template <int depth>
+  Interval values_in(std::span<const Interval> ranges, const Interval& time) const noexcept;
+  static Interval value_of(const Expression::Instruction& instruction, const Interval* x) noexcept;
+  static Interval chosen(const Expression::Instruction& instruction, const Interval* x) noexcept;
   static IntervalJet range_of(const Expression::Instruction& instruction, const IntervalJet* x) noexcept;
   static Bounds decides_by(const Expression::Instruction& instruction, const Span& span, const IntervalJet* x,
                            const Jet* m) noexcept;

@@ -43,6 +43,7 @@ MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.al
     loads_.push_back(std::move(own));
   }
   ranges_.resize(channels);
+  reaches_.resize(channels);
   middles_.resize(channels);
   values_.resize(channels);
   switches_.resize(switches);
@@ -227,19 +228,63 @@ bool MotionLoads::resolved(double& part, Fault& fault) {
 }
 
 void MotionLoads::note() {
-  Fault ignored;
-  if (!any() || !follow(ignored)) return;
+  if (!any()) return;
+  follow_ends();
+  bool open = false;
   for (Load& load : loads_) {
-    for (Formula& formula : load.formulas) note(load, formula);
+    for (Formula& formula : load.formulas) {
+      formula.open = is_open(load, formula);
+      open = open || formula.open;
+    }
   }
+  Fault ignored;
+  if (!open || !follow(ignored)) return;
+  for (Load& load : loads_) {
+    for (Formula& formula : load.formulas) {
+      if (formula.open) note(load, formula);
+    }
+  }
+}
+
+void MotionLoads::follow_ends() {
+  const double start = run_.accepted.t();
+  for (Load& load : loads_) {
+    channels_.follow(*load.load, run_.accepted.a(), run_.e_accepted, load.motion.end(0));
+    channels_.follow(*load.load, run_.trial.a(), run_.e_trial, load.motion.end(MotionPieces::count));
+    load.motion.take(start, run_.trial.t() - start);
+  }
+}
+
+double MotionLoads::allowed(const Formula& formula) {
+  const double largest = std::max(std::abs(formula.low), std::abs(formula.high));
+  return std::max({formula.beyond, hidden_part * (formula.high - formula.low), no_change * largest});
+}
+
+// Notes what a formula is at both ends. Whether it can go beyond, as far as the ranges of its channels in the whole
+// step show: most steps are a small part of the way, and nothing more need be looked at.
+bool MotionLoads::is_open(const Load& load, Formula& formula) {
+  const std::size_t channels = load.load->formulas->channels.size();
+  const std::span<double> values(values_.data(), channels);
+  double low = unbounded, high = -unbounded;
+  for (const std::size_t k : {std::size_t{0}, MotionPieces::count}) {
+    load.motion.values_at_end(k, values);
+    double here = 0.0;
+    EvaluationFailure ignored;
+    const double t = load.motion.time(k == 0 ? 0.0 : 1.0);
+    if (!formula.bounds.formula().value({t, values, nullptr}, here, ignored) || !std::isfinite(here)) return false;
+    low = std::min(low, here), high = std::max(high, here);
+  }
+  formula.low = std::min(formula.low, low), formula.high = std::max(formula.high, high);
+  const std::span<Interval> reaches(reaches_.data(), channels);
+  load.motion.reach(reaches);
+  const Interval range = formula.bounds.values(reaches, {load.motion.time(0.0), load.motion.time(1.0)});
+  return !(std::max(range.high - high, low - range.low) <= allowed(formula));
 }
 
 void MotionLoads::note(const Load& load, Formula& formula) {
   Course course{.load = load, .formula = formula, .sides = nullptr};
   const double begin = value(course, 0.0), end = value(course, 1.0);
-  if (!std::isfinite(begin) || !std::isfinite(end)) return;
   course.low = std::min(begin, end), course.high = std::max(begin, end);
-  formula.low = std::min(formula.low, course.low), formula.high = std::max(formula.high, course.high);
   for (std::size_t k = 0; k < MotionPieces::count; ++k) {
     const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
     seek_beyond(course, formula, from, from + 1.0 / static_cast<double>(MotionPieces::count));
@@ -248,8 +293,7 @@ void MotionLoads::note(const Load& load, Formula& formula) {
 
 void MotionLoads::seek_beyond(Course& course, Formula& formula, double from, double to) {
   if (++course.looks > most_looks_at_ends) return;
-  const double largest = std::max(std::abs(formula.low), std::abs(formula.high));
-  course.allowed = std::max({formula.beyond, hidden_part * (formula.high - formula.low), no_change * largest});
+  course.allowed = allowed(formula);
   bound(course, from, to);
   const auto beyond = [&](const Interval& range) { return std::max(range.high - course.high, course.low - range.low); };
   if (!(beyond(bounds_.range.value) > course.allowed)) return;

@@ -45,6 +45,7 @@ class MotionLoads {
     int first_switch;                           ///< in Layout::switches
     double low = unbounded, high = -unbounded;  ///< at the ends of all steps
     double beyond = 0.0, at = 0.0;              ///< farthest beyond both ends of a step, and when [s]
+    bool open = false;                          ///< whether more is to be known of it than a first look shows
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.low, self.high, self.beyond, self.at);
@@ -76,6 +77,8 @@ class MotionLoads {
   };
 
   bool follow(Fault& fault);
+  void follow_ends();
+  bool is_open(const Load& load, Formula& formula);
   double resolved(const Load& load, const Formula& formula);
   bool show(Course& course);
   double value(const Course& course, double s);
@@ -85,6 +88,8 @@ class MotionLoads {
   bool may_cross(const Course& course) const;
   bool crosses(const Course& course, double s);
   void note(const Load& load, Formula& formula);
+  /// By how much more it may be off than both ends of a step show.
+  static double allowed(const Formula& formula);
   void seek_beyond(Course& course, Formula& formula, double from, double to);
 
   RunContext& run_;
@@ -93,6 +98,7 @@ class MotionLoads {
   std::vector<Load> loads_;
   double longest_ = unbounded;
   std::vector<IntervalJet> ranges_;
+  std::vector<Interval> reaches_;
   std::vector<Jet> middles_;
   std::vector<double> values_, changes_, decides_, rates_, scale_;
   FormulaBounds::Bounds bounds_;

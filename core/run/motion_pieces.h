@@ -1,6 +1,7 @@
 // MotionPieces: channels of the motion along a step, as cubics over four equal pieces of it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -24,6 +25,21 @@ class MotionPieces {
   void take(double start, double dt) { start_ = start, dt_ = dt; }
   double time(double s) const { return start_ + s * dt_; }
   double length() const { return dt_; }
+
+  void values_at_end(std::size_t k, std::span<double> values) const {
+    for (std::size_t c = 0; c < values.size(); ++c) values[c] = ends_[k][c].value;
+  }
+  /// Where values can be in the whole step, by both its ends: the hull of the cubic's control points, made wider by an
+  /// eighth to both sides for what a cubic does not follow.
+  void reach(std::span<Interval> ranges) const {
+    for (std::size_t c = 0; c < ranges.size(); ++c) {
+      const Jet &begin = ends_[0][c], &end = ends_[count][c];
+      const auto [low, high] =
+          std::minmax({begin.value, begin.value + dt_ / 3.0 * begin.rate, end.value - dt_ / 3.0 * end.rate, end.value});
+      const double more = 0.125 * (high - low);
+      ranges[c] = {low - more, high + more};
+    }
+  }
 
   /// Values at the fraction s of the step.
   void at(double s, std::span<double> values) const {
