@@ -12,6 +12,7 @@ import platform
 import subprocess
 import sys
 
+import formulas
 import instructions
 import page
 import pareto
@@ -32,6 +33,7 @@ PARTS = {
     "load": ("reading and checking models", parts.load),
     "output": ("what rows at 1 kHz of all channels cost", parts.output),
     "instructions": ("machine instructions of runs by fixed steps and by accuracy, which repeat on a busy machine", instructions.measure),
+    "formulas": ("instructions of formulas of the motion, up to 10 000 of them, and beside the same load in C++", formulas.measure),
     "studies": ("what the engine of studies costs a point, and memory and time of 10^5 points", studies.studies),
 }
 

@@ -74,11 +74,16 @@ def of_instructions(found):
     return markdown(found["heading"], found["rows"])
 
 
+def of_formulas(found):
+    return markdown(["formulas", "number", "instructions of loading, each", "of a step, each"], found["growth"]["rows"]) + "\n" + markdown(
+        ["load", "formula: steps", "instructions a step", "plugin: steps", "instructions a step", "whole run"], found["beside"]["rows"])
+
+
 def of_studies(found):
     return markdown(*studies.rows_of_engine(found)) + "\n" + markdown(*studies.rows_of_large(found))
 
 
-MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies, "instructions": of_instructions,
+MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies, "instructions": of_instructions, "formulas": of_formulas,
           **{name: of_problem for name in PROBLEMS}}
 
 
