@@ -285,9 +285,18 @@ TEST(RevoluteClearanceInSpace, LoadRestsInTheAxesOfTheBearing) {
   }();
   const Vector3d place = axes.transpose() * vector3(offset.position);
   const auto depth = [](double force) { return std::pow(force / K, 2.0 / 3.0); };
-  EXPECT_NEAR(place.x(), -0.6 * (c + depth(5.0)), 1e-15);
-  EXPECT_NEAR(place.y(), 0.8 * (c + depth(5.0)), 1e-15);
-  EXPECT_NEAR(place.z(), -(c + depth(12.0)), 1e-15);
+  // Along the load across the axis: the shoulder lifts the place where it acts, which tilts the pin, and so on.
+  double height = 0.0, slope = 0.0, along = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    height = -(c + depth(12.0 + 5.0 * slope));
+    const double upper = -(c + depth(10.0 * (0.5 + height / bearing_length))),
+                 lower = -(c + depth(10.0 * (0.5 - height / bearing_length)));
+    slope = (upper - lower) / bearing_length;
+    along = 0.5 * (upper + lower) + height * slope;
+  }
+  EXPECT_NEAR(place.x(), 0.6 * along, 1e-15);
+  EXPECT_NEAR(place.y(), -0.8 * along, 1e-15);
+  EXPECT_NEAR(place.z(), height, 1e-15);
 }
 
 // On one side of the bearing, on opposite ones, and on a shoulder; what the tilt, 2 c/L at most, does to the arms is

@@ -320,7 +320,7 @@ space: spatial
 gravity: [0, -3, -9.81]
 bodies:
   tube: {mass: 5 kg, inertia: [1, 1, 1]}
-  beam: {mass: 2 kg, inertia: [1e-3, 1e-2, 2e-2], velocity: {linear: [0.2, 0.1, 0.05], angular: [30, 1, 2]}}
+  beam: {mass: 2 kg, inertia: [1e-3, 1e-2, 1.05e-2], velocity: {linear: [0.2, 0.1, 0.05], angular: [30, 1, 2]}}
 joints:
   hub: {type: revolute, between: [ground, tube]}
   bore: {type: tube, between: [tube, beam], radius: 20 mm, promise: told}
