@@ -189,10 +189,36 @@ bool StateFormula::run_in(const Input& in, const Change& change, const Decided& 
   return false;
 }
 
+// Of what most formulas are made of, where it is defined: without the derivatives that a jet brings. Else NaN.
+double StateFormula::usual_value(const Expression::Instruction& instruction, const double* operands) noexcept {
+  const double x = operands[0];
+  switch (instruction.operation) {
+    case Operation::divide:
+      return x / operands[1];
+    case Operation::power_constant:
+      return x == 0.0 ? nan : std::pow(x, instruction.constant);
+    case Operation::root:
+      return x > 0.0 ? std::sqrt(x) : nan;
+    case Operation::sine:
+      return std::sin(x);
+    case Operation::cosine:
+      return std::cos(x);
+    case Operation::exponential:
+      return std::exp(x);
+    default:
+      return nan;
+  }
+}
+
 template <class Number>
 void StateFormula::apply(const Expression::Instruction& instruction, Number* operands,
                          EvaluationFailure& failure) const noexcept {
   if constexpr (std::is_same_v<Number, double>) {
+    const double usual = usual_value(instruction, operands);
+    if (std::isfinite(usual)) {
+      operands[0] = usual;
+      return;
+    }
     Jet jets[4];
     for (int k = 0; k < Expression::operand_count(instruction.operation); ++k) jets[k] = Jet::constant(operands[k]);
     operands[0] = expression_.apply_or_lack(instruction, jets, failure) ? jets[0].value : nan;

@@ -63,6 +63,7 @@ class StateFormula {
               EvaluationFailure& failure) const noexcept;
   template <class Number>
   void apply(const Expression::Instruction& instruction, Number* operands, EvaluationFailure& failure) const noexcept;
+  static double usual_value(const Expression::Instruction& instruction, const double* operands) noexcept;
   template <class Number>
   void differentiate(const Expression::Instruction& instruction, Number* operands,
                      EvaluationFailure& failure) const noexcept;

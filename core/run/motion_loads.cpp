@@ -39,6 +39,7 @@ MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.al
       switches = std::max(switches, at(formula.switches()));
     }
     if (own.formulas.empty()) continue;
+    own.end_values.resize(load.formulas->channels.size());
     channels = std::max(channels, load.formulas->channels.size());
     loads_.push_back(std::move(own));
   }
@@ -236,6 +237,7 @@ void MotionLoads::note() {
       formula.open = is_open(load, formula);
       open = open || formula.open;
     }
+    load.motion.values_at_end(MotionPieces::count, load.end_values);
   }
   Fault ignored;
   if (!open || !follow(ignored)) return;
@@ -268,11 +270,14 @@ bool MotionLoads::is_open(const Load& load, Formula& formula) {
   double low = unbounded, high = -unbounded;
   for (const std::size_t k : {std::size_t{0}, MotionPieces::count}) {
     load.motion.values_at_end(k, values);
-    double here = 0.0;
+    const double t = k == 0 ? run_.accepted.t() : run_.trial.t();
+    double here = formula.end_value;
     EvaluationFailure ignored;
-    const double t = load.motion.time(k == 0 ? 0.0 : 1.0);
-    if (!formula.bounds.formula().value({t, values, nullptr}, here, ignored) || !std::isfinite(here)) return false;
+    const bool same = t == formula.end_time && std::ranges::equal(values, load.end_values);
+    if (!same && !formula.bounds.formula().value({t, values, nullptr}, here, ignored)) return false;
+    if (!std::isfinite(here)) return false;
     low = std::min(low, here), high = std::max(high, here);
+    formula.end_time = t, formula.end_value = here;
   }
   formula.low = std::min(formula.low, low), formula.high = std::max(formula.high, high);
   const std::span<Interval> reaches(reaches_.data(), channels);

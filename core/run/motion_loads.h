@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "base/formula_bounds.h"
@@ -42,10 +43,11 @@ class MotionLoads {
  private:
   struct Formula {
     FormulaBounds bounds;
-    int first_switch;                           ///< in Layout::switches
-    double low = unbounded, high = -unbounded;  ///< at the ends of all steps
-    double beyond = 0.0, at = 0.0;              ///< farthest beyond both ends of a step, and when [s]
-    bool open = false;                          ///< whether more is to be known of it than a first look shows
+    int first_switch;                                 ///< in Layout::switches
+    double low = unbounded, high = -unbounded;        ///< at the ends of all steps
+    double beyond = 0.0, at = 0.0;                    ///< farthest beyond both ends of a step, and when [s]
+    bool open = false;                                ///< whether more is to be known of it than a first look shows
+    double end_time = std::nan(""), end_value = 0.0;  ///< of the step before
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.low, self.high, self.beyond, self.at);
@@ -55,6 +57,7 @@ class MotionLoads {
     const LoadChannels::Load* load;
     std::vector<Formula> formulas{};
     MotionPieces motion;
+    std::vector<double> end_values{};  ///< of its channels, of the step before
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.formulas);

@@ -311,6 +311,22 @@ void AppliedForces::decide(const Point& point, std::span<const double> a, const 
   }
 }
 
+void AppliedForces::decide(const Point& point, const Evaluation& e, std::span<double> room,
+                           std::span<double> values) const {
+  std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
+  std::size_t next = 0;
+  for (const Load& load : loads_) {
+    if (load.formulas->switches() == 0) continue;
+    StateFormula::Input in = input(load, point, e, room);
+    for (const StateFormula& formula : load.formulas->formulas) {
+      const std::size_t count = at(formula.switches());
+      if (count > 0) formula.decide(in, values.subspan(next, count));
+      next += count;
+      in.sides += count;
+    }
+  }
+}
+
 void AppliedForces::scale(const Point& point, double size, const Evaluation& e, std::span<double> room,
                           std::span<double> scales) const {
   std::ranges::fill(scales, 0.0);
@@ -347,7 +363,14 @@ bool AppliedForces::take_sides(const Point& point, std::span<const double> a, co
                                std::span<double> room, std::span<double> sides) const {
   const std::span<double> values = room.subspan(2 * most_channels_, sides.size());
   const std::span<double> rates = room.subspan(2 * most_channels_ + sides.size(), sides.size());
-  decide(point, a, e, room, values, rates);
+  // Rates are wanted where a switch is zero from the start on.
+  decide(point, e, room, values);
+  for (std::size_t s = 0; s < values.size(); ++s) {
+    if (values[s] == 0.0 && sides[s] == 0.0) {
+      decide(point, a, e, room, values, rates);
+      break;
+    }
+  }
   bool changed = false;
   std::size_t next = 0;
   for (const Load& load : loads_) {

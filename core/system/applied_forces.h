@@ -29,6 +29,8 @@ class AppliedForces {
   /// unknowns, at an evaluated point (forces or events); NaN where it has none. `room`: switch_numbers() numbers.
   void decide(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> room,
               std::span<double> values, std::span<double> rates) const;
+  /// The values alone.
+  void decide(const Point& point, const Evaluation& e, std::span<double> room, std::span<double> values) const;
   /// By how much what decides them changes, in all, where positions change by 1 m, angles by 1 m at the distance
   /// `size`, velocities by as much in 1 s, and time by 1 s.
   void scale(const Point& point, double size, const Evaluation& e, std::span<double> room,
