@@ -200,9 +200,12 @@ class Dual {
     VectorXd t = VectorXd::Zero(null_.cols());
     double scale = 0.0;
     for (const RoundedSupport& support : supports_) scale = std::max(scale, support.scale(start));
-    // The kinks are rounded, less and less.
-    for (double round = 0.1; round >= smallest_round; round *= 0.1) {
-      for (int i = 0; i < 30 && improve(start, round * scale, t); ++i) {
+    // The kinks are rounded, less and less; those of corners in small steps, as each step may cross but few of them.
+    const bool corners = std::ranges::any_of(generators_, [](const Generator& g) { return g.hull != nullptr; });
+    const double less = corners ? 0.5 : 0.1;
+    const int most = corners ? 200 : 30;
+    for (double round = 0.1; round >= smallest_round; round *= less) {
+      for (int i = 0; i < most && improve(start, round * scale, t); ++i) {
       }
     }
     multipliers_ = start + null_ * t;

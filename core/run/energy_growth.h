@@ -9,7 +9,7 @@ class EnergyGrowth {
  public:
   explicit EnergyGrowth(RunContext& run) : run_(run) {}
 
-  void start() { explained_energy_ = energy_of(run_.e_accepted); }
+  void start() { explained_energy_ = energy_of(run_.e_accepted).size; }
   /// Whether energy has grown in the step that was just made far beyond the work of all that acts.
   bool too_large();
   /// Without work, by the step that was looked at last [J].
@@ -21,7 +21,10 @@ class EnergyGrowth {
   }
 
  private:
-  double energy_of(const Evaluation& e) const;
+  struct Energy {
+    double value, size;  ///< [J]
+  };
+  Energy energy_of(const Evaluation& e) const;
   double energy_of_drives() const;
 
   RunContext& run_;

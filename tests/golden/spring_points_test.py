@@ -1,4 +1,5 @@
 """Springs whose force goes through given points."""
+import math
 import unittest
 
 from model_cases import EXACT, ModelTest
@@ -69,6 +70,20 @@ simulation: {end: 0.5, %s, output: {interval: 2 ms}}
         for name in ("joint.rail.position", "energy.potential"):
             for x, y in zip(number[name], line[name], strict=True):
                 self.assertAlmostEqual(x, y, delta=1e-9)
+
+    def test_that_store_less_than_nothing_where_they_start_swing_as_they_should(self):
+        """k u^2/2 + P u is negative between -2 P/k and 0; the same force by stiffness, formula and points."""
+        mass, k, preload, start = 2.0, 1000.0, 50.0, 0.97
+        middle, rate = 1.0 - preload / k, math.sqrt(k / mass)
+        laws = ("stiffness: 1000 N/m\n    preload: 50 N", 'spring: "1000 N/m*x + 50 N"',
+                "spring: {points: [[-100 mm, -50 N], [0, 50 N]]}")
+        for law in laws:
+            for settings in ("accuracy: 1e-9", "step: 20 us"):
+                head, _, tail = (self.TEXT % ("linear", settings)).partition("    spring:")
+                tail = tail[tail.index("\n"):].replace("rail: 1.035 m", "rail: 0.97 m").replace("rail: 0.5 m/s", "rail: 0")
+                columns = self.run_model(head + "    " + law + tail)
+                for t, x in zip(columns["time"], columns["joint.rail.position"], strict=True):
+                    self.assertAlmostEqual(middle + (start - middle) * math.cos(rate * t), x, delta=1e-7)
 
     def test_say_what_is_wrong_with_the_points(self):
         for points, error in (

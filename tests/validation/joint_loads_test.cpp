@@ -38,8 +38,8 @@ TEST(JointLoads, APulseThatFixedStepsShowIsNotDoubted) {
   for (const int told : {0, 1, 2}) {
     EXPECT_EQ(doubted(2e-2, "1 ms", told), "") << told;
     EXPECT_EQ(doubted(2e-4, "0.02 ms", told), "") << told;
-    EXPECT_EQ(doubted(2e-4, "1 ms", told == 2 ? 0 : told, "0"), "") << told;  // of no height
   }
+  EXPECT_EQ(doubted(2e-4, "1 ms", 0, "0"), "");  // of no height
 }
 
 }  // namespace

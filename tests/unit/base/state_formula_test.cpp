@@ -198,7 +198,7 @@ TEST(StateFormula, ReadsPlainWordsAndNumbersThatFitAnyUnit) {
   };
   EXPECT_EQ(error("x + y"), "unknown-name 4+1 xit may hold x or v");
   EXPECT_EQ(error("x + v"), "dimension-mismatch 0+5 ");
-  EXPECT_EQ(error("x*t"), "time-not-allowed 2+1 ");
+  EXPECT_EQ(error("x*t"), "time-not-allowed 2+1 it may hold x or v");
   EXPECT_EQ(error("x + [3]*v"), "accepted");
   EXPECT_EQ(error("x + [ 3.5 ]"), "accepted");
   EXPECT_EQ(error("2 x"), "bad-unit 2+1 ");
