@@ -48,7 +48,7 @@ void check_forces(const JointProbe& probe, bool passive, const std::vector<Joint
 void check_cycle(const JointProbe& probe, const JointSubject& subject, RandomNumbers& random, Findings& findings);
 void check_memory(const JointProbe& probe, const JointProbe& twin, const std::vector<JointMoment>& moments,
                   RandomNumbers& random, Findings& findings);
-void check_bounds(const JointProbe& probe, RandomNumbers& random, Findings& findings);
+void check_bounds(const JointProbe& probe, RandomNumbers random, Findings& findings);
 void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,
                 Findings& findings);
 void check_time(const JointProbe& probe, const std::vector<JointMoment>& moments, RandomNumbers& random,

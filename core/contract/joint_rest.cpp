@@ -110,7 +110,7 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
 
 /// Within half of its bounds a joint leaves b alone, from twice of one on it does not: both leave room for what is of
 /// second order.
-void check_bounds(const JointProbe& probe, RandomNumbers& random, Findings& findings) {
+void check_bounds(const JointProbe& probe, RandomNumbers random, Findings& findings) {
   constexpr int tries = 12;
   constexpr std::size_t each = 7;
   constexpr double most_turn = 0.2;  // beyond is second order

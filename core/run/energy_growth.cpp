@@ -68,7 +68,8 @@ bool EnergyGrowth::too_large() {
   if (after.size <= suspicious * explained_energy_) return false;
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.kinks.next(run_.accepted.t(), run_.trial.t()) <= run_.trial.t()) return false;
-  const double before = energy_of(run_.e_accepted).value, high = run_.system.inertia().gravity_potential(run_.e_accepted->q);
+  const double before = energy_of(run_.e_accepted).value,
+               high = run_.system.inertia().gravity_potential(run_.e_accepted->q);
   const double fallen = high - run_.system.inertia().gravity_potential(run_.e_trial->q), drives = energy_of_drives();
   const double work = std::abs(fallen) + dt * run_.energy.largest_power(run_.e_accepted, run_.accepted.lambda(),
                                                                         run_.e_trial, run_.trial.lambda());
