@@ -76,6 +76,7 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
   constexpr double inside = 1.0 - 1e-6;  // rounding of where the markers are put
   const JointLayout& layout = probe.layout();
   const bool turns = probe.space() == Space::spatial && layout.free_turns != 0;
+  RandomNumbers of_turns = random;  // so that other rules keep their numbers
   const bool walls = probe.space() == Space::planar && layout.clearance > 0.0 && plays_between_walls(layout);
   for (const JointMoment& moment : moments) {
     const double distance = probe.free_distance(moment);
@@ -84,7 +85,7 @@ void check_rest(const JointProbe& probe, const std::vector<JointMoment>& moments
     for (int i = 0; i < tries; ++i) {
       JointMoment there = moment;
       there.markers = walls   ? strayed_between_walls(moment.markers, inside * distance, layout.contact_reach, random)
-                      : turns ? strayed_with_turns(moment.markers, inside * distance, levers, random)
+                      : turns ? strayed_with_turns(moment.markers, inside * distance, levers, of_turns)
                               : strayed(moment.markers, probe.space(), inside * distance, random);
       const auto expect = [&](bool held, const char* what) {
         findings.expect("free-distance", held, [&] {
