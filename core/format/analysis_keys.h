@@ -13,7 +13,7 @@ inline constexpr FormatKey analysis[] = {
      "{x: 0.1*t, y: 0, angle: 0}"},
     {"time", "grid", "s", "the run, 101 points", "Instants on the path.", "{linspace: [0, 1, 101]}"},
     {"grid", "map pose_grid", "", "", "Poses.", "{x: {linspace: [0, 0.1, 11]}, y: 0}"},
-    {"limits", "entries of list of quantity", "m or rad", "none",
+    {"limits", "entries of list of quantity", "m or rad", "",
      "Lowest and highest coordinate of joints, by name or pattern; stops of the model count without it.",
      "{leg*.slide: [0.4 m, 0.7 m]}"},
     {"error", "map error", "", "", "Play that is looked at.", "{input: 0.1 deg}"}};
