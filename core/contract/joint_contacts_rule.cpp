@@ -292,9 +292,11 @@ class WayCheck {
 
   void run(const ContactPose& pose, Findings& findings) {
     constexpr int points = 48;
+    constexpr double deepest_part = 0.4;  // of the play: laws of lines end at half of it
     double most = 0.0, steepest = 0.0;
     for (int i = 0; i < points; ++i) {
       const double low = static_cast<double>(i) / points, high = static_cast<double>(i + 1) / points;
+      if (deepest(high) > deepest_part * pose.way) break;
       if (signs(low) != signs(high)) judge(pose, low, high, true, findings);
       if (const double step = apart(wrench(low), wrench(high)); step > most) most = step, steepest = low;
     }
@@ -309,6 +311,16 @@ class WayCheck {
     return there_;
   }
   std::vector<double> wrench(double s) { return probe_.forces(at(s)).wrench; }
+  /// As contacts that have not begun see it.
+  double deepest(double s) {
+    const JointMoment fresh = probe_.start(at(s).markers, there_.t);
+    const std::vector<double> g = probe_.events(fresh).g;
+    double most = 0.0;
+    for (std::size_t i = 0; i < g.size(); ++i) {
+      if (event_role(probe_.layout(), i) == EventRole::contact_begin && g[i] > most) most = g[i];
+    }
+    return most;
+  }
   std::vector<bool> signs(double s) {
     std::vector<bool> result;
     for (const double g : probe_.events(at(s)).g) result.push_back(g > 0.0);

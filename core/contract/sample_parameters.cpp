@@ -131,7 +131,10 @@ class Sampler {
       if (unit.dimension == dimension::length && first.dimension == dimension::angle) {
         set_closed_sample(size, value);
       } else {
-        set_sample_formula(size / usual_size(first.dimension), value);
+        // Bodies in samples move by about 1 m/s: friction that grows with it stays one that occurs.
+        const double usual_speed = 1.0;
+        set_sample_formula(size / (first.dimension == dimension::velocity ? usual_speed : usual_size(first.dimension)),
+                           value);
       }
     } else if (p.kind == ParameterKind::list || p.kind == ParameterKind::table) {
       const std::vector<VariableRow> variables = variables_of(p);
