@@ -52,6 +52,10 @@ def rooms_below():
 
 ROOMS = rooms_below()
 
+# Besides names that begin with a dot, and what is made there: build and results.
+TOP_LEVEL = {"README.md", "LICENSE", "CHANGELOG.md", "CMakeLists.txt", "CMakePresets.json", "dev", "core", "joints", "contact",
+             "solvers", "mechanisms", "plugins", "tests", "docs"}
+
 # Library headers by their first folder or name: the rooms that may include them.
 EVERY_ROOM = set(ROOMS)
 LIBRARIES = {
@@ -165,6 +169,12 @@ class Layering(unittest.TestCase):
         included = {include[2].split("/")[0] for path in sources("core") for line in read(path).splitlines()
                     if (include := INCLUDE.match(line))}
         self.assertEqual(set(), set(LIBRARIES) - included)
+
+    def test_nothing_else_stands_at_the_top(self):
+        listed = subprocess.run(["git", "-C", ROOT, "ls-files"], capture_output=True, text=True)
+        names = listed.stdout.splitlines() if listed.returncode == 0 else os.listdir(ROOT)
+        there = {name.split("/")[0] for name in names if not name.startswith(".")}
+        self.assertEqual(there - {"build", "results"}, TOP_LEVEL)
 
     def test_the_page_on_architecture_names_files_that_are_there(self):
         paths = [os.path.join(folder, name) for top in ("core", "tests", *PLUGIN_FOLDERS)
