@@ -36,8 +36,9 @@ class ArchiveWriter {
  public:
   explicit ArchiveWriter(Archive& archive) : archive_(archive) {}
 
+  // Cold, here and below: a state is written once in thousands of steps, so small code serves better than quick code.
   template <class... T>
-  void operator()(const T&... values) {
+  [[gnu::cold]] void operator()(const T&... values) {
     (put(values), ...);
   }
   /// A list whose length changes during a run.
@@ -91,7 +92,7 @@ class ArchiveWriter {
     for (const char c : text) put(c);
   }
   template <class T>
-  void put_doubles(const std::vector<T>& values) {
+  [[gnu::cold]] void put_doubles(const std::vector<T>& values) {
     static_assert(sizeof(T) % sizeof(double) == 0 && alignof(T) == alignof(double));
     put(values.size());
     const std::size_t count = values.size() * sizeof(T) / sizeof(double), first = archive_.reals.size();
@@ -113,11 +114,11 @@ class ArchiveReader {
 
   /// Lists keep their lengths.
   template <class... T>
-  void operator()(T&... values) {
+  [[gnu::cold]] void operator()(T&... values) {
     (get(values), ...);
   }
   template <class T>
-  void list(std::vector<T>& values) {
+  [[gnu::cold]] void list(std::vector<T>& values) {
     // Whatever is damaged asks for no more room than the numbers that are there take themselves.
     const std::int64_t count = integer();
     require(count >= 0 && static_cast<std::uint64_t>(count) <= archive_.reals.size() + archive_.integers.size());
@@ -185,7 +186,7 @@ class ArchiveReader {
     text.assign(characters.begin(), characters.end());
   }
   template <class T>
-  void get_doubles(std::vector<T>& values) {
+  [[gnu::cold]] void get_doubles(std::vector<T>& values) {
     expect(static_cast<std::int64_t>(values.size()));
     const std::size_t count = values.size() * sizeof(T) / sizeof(double);
     require(count <= archive_.reals.size() - real_);
