@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t most_gears = 1000;  // that are looked at
 constexpr double one_stage = 100.0;       // ratio of a pair of wheels: a worm slows down by so much
 constexpr double turns_through = 2.0;     // to and fro after such a pair
+constexpr double most_slowing = 5000.0;   // geared motors of several stages come to a thousand or two
 constexpr double most_speeding = 300.0;   // of a pair behind a motor: gears of wind turbines come to a hundred in all
 
 /// What a driver makes of the coordinate of a joint.
@@ -100,11 +101,22 @@ class GearDoubts {
       if (judge_speed(to, travel->second, *ratio)) return;
     }
     const auto speeding = sped_up_.find(g);
-    if (speeding == sped_up_.end()) return;
+    if (speeding == sped_up_.end()) return judge_slowing(gear, *ratio);
     ratio->warn("doubtful-value",
                 fmt::format("'{}' makes '{}' and '{}' turn by 1 to {:.4g}, and the motor is on the slow side: one pair "
                             "of wheels changes speeds by up to ten; is the ratio meant the other way round?",
                             ratio->path(), joint(gear.first).name, joint(gear.second).name, speeding->second));
+  }
+
+  void judge_slowing(const Gear& gear, const CheckedValue& written) const {
+    const bool slows = std::abs(gear.ratio) < 1.0;
+    const double by = slows ? 1.0 / std::abs(gear.ratio) : std::abs(gear.ratio);
+    if (by <= most_slowing || !turns(gear.first) || !turns(gear.second)) return;
+    const int slow = slows ? gear.second : gear.first, fast = slows ? gear.first : gear.second;
+    written.warn("doubtful-value",
+                 fmt::format("'{}' makes '{}' turn by 1 to {:.4g} of '{}', more than gears of several "
+                             "stages have: check the ratio",
+                             written.path(), joint(slow).name, by, joint(fast).name));
   }
 
   /// Way of a slide by the angle that it is geared to, as a radius.

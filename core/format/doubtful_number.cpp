@@ -37,6 +37,7 @@ constexpr UsualRange usual_ranges[] = {
 };
 
 constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are simulated
+constexpr double earth_gravity = 9.81;       // [m/s^2], within 3 %: 9.78 to 9.83 on the ground, 10 in schools
 
 bool begins_word(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
 bool is_word_part(char c) { return begins_word(c) || std::isdigit(static_cast<unsigned char>(c)); }
@@ -199,13 +200,20 @@ void doubt_start_length(const CheckedValue& written, double value, double scale)
 
 void doubt_gravity(const CheckedValue& written, const Vector3& gravity) {
   const double size = std::hypot(gravity[0], gravity[1], gravity[2]);
+  for (const std::size_t upwards : {1u, 2u}) {
+    if (gravity[upwards] < 0.99 * size || std::abs(size - earth_gravity) > 0.03 * earth_gravity) continue;
+    written.warn("doubtful-value", fmt::format("'{}' pulls towards +{}, which is up in drawings: write {:.4g} in place "
+                                               "of {:.4g} if things are to fall down",
+                                               written.path(), upwards == 1 ? 'y' : 'z', -size, size));
+    return;
+  }
   if (size <= bare_limit::gravity || !written.node().is_list()) return;
   for (std::size_t i = 0; i < written.node().items.size(); ++i) {
     if (std::abs(gravity[i]) > 0.5 * size && names_a_unit(written.item(i))) return;
   }
   written.warn("doubtful-value", fmt::format("'{0}' is {1:.4g} m/s^2, {2:.0f} times that of the earth: write the unit "
                                              "after the number, as in '{1:.4g} mm/s^2'",
-                                             written.path(), size, size / 9.81));
+                                             written.path(), size, size / earth_gravity));
 }
 
 void doubt_step(const CheckedValue& written, double step, double span) {
