@@ -1,6 +1,7 @@
 """What tests of the package share: the program, a model, bits, a folder for each test."""
 import os
 import pathlib
+import signal
 import tempfile
 import unittest
 import warnings
@@ -25,6 +26,8 @@ def is_in_core(frame, function):
 
 class InFolder(unittest.TestCase):
     def setUp(self):
+        # Shells start what goes on in their background with interrupts ignored.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.addCleanup(os.chdir, os.getcwd())
