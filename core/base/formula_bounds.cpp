@@ -133,34 +133,15 @@ Interval FormulaBounds::values_in(std::span<const Interval> ranges, const Interv
 }
 
 Interval FormulaBounds::value_of(const Expression::Instruction& instruction, const Interval* x) noexcept {
+  Interval out;
+  if (FormulaSides::take_usual(instruction, x, out)) return out;
   switch (instruction.operation) {
-    case Operation::negate:
-      return -x[0];
-    case Operation::add:
-      return x[0] + x[1];
-    case Operation::subtract:
-      return x[0] - x[1];
-    case Operation::multiply:
-      return x[0] * x[1];
-    case Operation::divide:
-      return x[0] / x[1];
-    case Operation::power_constant:
-      return pow(x[0], instruction.constant);
-    case Operation::sine:
-      return sin(x[0]);
-    case Operation::cosine:
-      return cos(x[0]);
-    case Operation::exponential:
-      return exp(x[0]);
     case Operation::absolute:
     case Operation::sign:
     case Operation::minimum:
     case Operation::maximum:
     case Operation::choose:
       return chosen(instruction, x);
-    case Operation::arctangent2:
-      if (x[0].contains(0.0) && x[1].low <= 0.0) return {-M_PI, M_PI};
-      break;
     default:
       break;
   }
@@ -192,7 +173,11 @@ Interval FormulaBounds::chosen(const Expression::Instruction& instruction, const
 
 IntervalJet FormulaBounds::range_of(const Expression::Instruction& instruction, const IntervalJet* x) noexcept {
   if (instruction.operation == Operation::smooth) return smooth(x[0], x[1], x[2]);
-  if (instruction.operation == Operation::arctangent2) return atan2(x[0], x[1]);
+  if (instruction.operation == Operation::arctangent2) {
+    // It may jump from one side of the half line to the left to the other.
+    const bool jumps = x[0].value.contains(0.0) && x[1].value.low <= 0.0;
+    return jumps ? IntervalJet{{-M_PI, M_PI}, Interval::whole(), Interval::whole()} : atan2(x[0], x[1]);
+  }
   return FormulaSides::range_of(instruction, x);
 }
 

@@ -226,25 +226,11 @@ IntervalJet FormulaSides::bound_angle(int i, const IntervalJet* x, const Jet* mi
 
 // Of an operation by those of its operands.
 IntervalJet FormulaSides::range_of(const Expression::Instruction& instruction, const IntervalJet* x) {
+  IntervalJet out;
+  if (take_usual(instruction, x, out)) return out;
   switch (instruction.operation) {
-    case Operation::negate:
-      return -x[0];
-    case Operation::add:
-      return x[0] + x[1];
-    case Operation::subtract:
-      return x[0] - x[1];
-    case Operation::multiply:
-      return x[0] * x[1];
-    case Operation::divide:
-      return x[0] / x[1];
-    case Operation::power_constant:
-      return pow(x[0], instruction.constant);
     case Operation::power:
       return pow(x[0], x[1]);
-    case Operation::sine:
-      return sin(x[0]);
-    case Operation::cosine:
-      return cos(x[0]);
     case Operation::tangent:
       return tan(x[0]);
     case Operation::arcsine:
@@ -253,8 +239,6 @@ IntervalJet FormulaSides::range_of(const Expression::Instruction& instruction, c
       return acos(x[0]);
     case Operation::root:
       return sqrt(x[0]);
-    case Operation::exponential:
-      return exp(x[0]);
     case Operation::logarithm:
       return log(x[0]);
     case Operation::hyperbolic_tangent:

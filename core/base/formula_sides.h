@@ -82,6 +82,9 @@ class FormulaSides {
   IntervalJet bound_operation(int i, const IntervalJet* x, const Jet* middle, bool hangs, const Span& span, int depth);
   IntervalJet bound_angle(int i, const IntervalJet* x, const Jet* middle, bool hangs, const Span& span, int depth);
   static IntervalJet range_of(const Expression::Instruction& instruction, const IntervalJet* x);
+  /// Of operations that ranges of values know as those of their courses do; false for others.
+  template <class Range>
+  static bool take_usual(const Expression::Instruction& instruction, const Range* x, Range& out);
   Where decide(std::size_t side, IntervalJet value, const Jet& middle, bool hangs, const Span& span, int depth);
   Where sought(std::size_t side, const IntervalJet& value, const Span& span);
   Where sought_touch(std::size_t side, const IntervalJet& value, const Span& span);
@@ -102,5 +105,40 @@ class FormulaSides {
   std::vector<IntervalJet> ranges_;
   std::vector<char> hangs_;  ///< along with ranges_: on a side that is not decided
 };
+
+template <class Range>
+bool FormulaSides::take_usual(const Expression::Instruction& instruction, const Range* x, Range& out) {
+  switch (instruction.operation) {
+    case Operation::negate:
+      out = -x[0];
+      return true;
+    case Operation::add:
+      out = x[0] + x[1];
+      return true;
+    case Operation::subtract:
+      out = x[0] - x[1];
+      return true;
+    case Operation::multiply:
+      out = x[0] * x[1];
+      return true;
+    case Operation::divide:
+      out = x[0] / x[1];
+      return true;
+    case Operation::power_constant:
+      out = pow(x[0], instruction.constant);
+      return true;
+    case Operation::sine:
+      out = sin(x[0]);
+      return true;
+    case Operation::cosine:
+      out = cos(x[0]);
+      return true;
+    case Operation::exponential:
+      out = exp(x[0]);
+      return true;
+    default:
+      return false;
+  }
+}
 
 }  // namespace freeplay

@@ -84,5 +84,24 @@ TEST(FormulaBounds, AreAsNarrowAsAFormulaOfOnePlaceAllows) {
   expect("(50 + 10*abs(x))*x", 1.0, 2.0, 60.0, 140.0);
 }
 
+TEST(FormulaBounds, AnAngleJumpsWhereItPassesTheHalfLineToTheLeft) {
+  const StateFormula formula(Expression::compile("atan2(x, v)", EmptyScope(), true, TwoWords()));
+  const auto bounded = [&](double v) {  // x passes zero by 1 a second
+    const std::vector<IntervalJet> ranges = {{{-0.1, 0.1}, Interval::at(1.0), {}},
+                                             IntervalJet::constant(Interval::at(v))};
+    const std::vector<Jet> at_middle = {Jet::time(0.0), Jet::constant(v)};
+    FormulaBounds::Bounds out;
+    FormulaBounds(formula).bound({0.0, 0.1, ranges, at_middle, nullptr}, out, {});
+    return out.range;
+  };
+  const IntervalJet left = bounded(-1.0), right = bounded(1.0);
+  EXPECT_DOUBLE_EQ(left.value.low, -M_PI);
+  EXPECT_DOUBLE_EQ(left.value.high, M_PI);
+  EXPECT_FALSE(left.rate.is_finite());
+  EXPECT_NEAR(right.value.low, -std::atan(0.1), 1e-3);
+  EXPECT_NEAR(right.value.high, std::atan(0.1), 1e-3);
+  EXPECT_TRUE(right.rate.is_finite());
+}
+
 }  // namespace
 }  // namespace freeplay::test
