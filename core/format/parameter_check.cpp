@@ -154,7 +154,7 @@ class ParameterCheck {
     if (is_law(parameter.kind)) {
       if (std::isnan(given)) return;
       const Component* preferred = registry_.preferred(law_kind(parameter.kind));
-      MapReader nothing = MapReader::empty(owner);
+      MapReader nothing = MapReader::absent(owner);
       if (preferred != nullptr) good_ = read_law(*preferred, nothing, parameter.name, value) && good_;
     } else if (none) {
       return;

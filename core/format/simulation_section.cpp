@@ -111,6 +111,7 @@ class SimulationSection {
 
   void read_accuracy(MapReader& map) {
     accuracy_ = map.find("accuracy");
+    if (draft_.options.step_by_map) accuracy_.reset();
     if (!accuracy_ || map.conflict("step", "accuracy")) return;
     settings_.accuracy = accuracy_->quantity(dimension::length, positive).value_or(0.0);
     settings_.accuracy_location = accuracy_->location();
@@ -279,7 +280,8 @@ class SimulationSection {
   void create_integrator() {
     const Component* chosen = nullptr;
     if (integrator_) chosen = read_integrator(*integrator_);
-    const bool by_accuracy = draft_.options.accuracy || (!integrator_ && settings_.accuracy > 0.0);
+    const bool own = integrator_ && draft_.options.integrator_by_map;
+    const bool by_accuracy = !own && (draft_.options.accuracy || (!integrator_ && settings_.accuracy > 0.0));
     if (by_accuracy && !draft_.options.integrator) {
       const Component* best = draft_.registry.preferred(ComponentKind::integrator, 2);
       if (best != nullptr) return use_defaults(*best);
@@ -324,7 +326,7 @@ class SimulationSection {
   void use_defaults(const Component& component) {
     const Node nothing;
     const CheckedValue owner(*draft_.top, nothing, nullptr, "simulation.integrator");
-    MapReader map = MapReader::empty(owner);
+    MapReader map = MapReader::absent(owner);
     create(check_parameters(component, map, draft_.registry), owner);
   }
 
