@@ -39,8 +39,8 @@ class PathOverrides {
   /// For a key that a reader looks for and the file lacks: an entry with the value of the command line, or with a map
   /// for what it has below. Null when it has nothing there.
   const Node::Entry* added(const std::string& address);
-  /// Entries that the command line adds to the map of names at `address`, which has `written`. A name that may be one of
-  /// its own misspelt is none.
+  /// Entries that the command line adds to the map of names at `address`, which has `written`. A name that may be one
+  /// of its own misspelt is none.
   std::vector<const Node::Entry*> added_names(const std::string& address, const std::vector<std::string>& written,
                                               MapNames names);
   /// A key that may stand there, written or not.

@@ -403,11 +403,10 @@ std::vector<std::string> StudyFile::named_addresses(const StudyModel& model) con
         });
     if (fits) named.push_back(address);
   }
-  // Keys that the model lacks, and that it may have.
   for (const PlannedAxis& axis : axes_) {
     for (const std::string& target : axis.targets()) {
-      const bool path = PathOverrides::is_path(target) && !is_run_override(target) && !is_pattern(target);
-      if (path && model.has(target) && std::ranges::find(named, target) == named.end()) named.push_back(target);
+      const bool path = PathOverrides::is_path(target) && !is_run_override(target) && model.has(target);
+      if (path && !is_pattern(target) && std::ranges::find(named, target) == named.end()) named.push_back(target);
     }
   }
   std::ranges::sort(named);

@@ -11,6 +11,7 @@
 #include "base/kept_input.h"
 #include "base/name_pattern.h"
 #include "base/sha256.h"
+#include "format/key_table.h"
 #include "format/model_builder.h"
 #include "format/path_override.h"
 #include "format/run_override.h"
@@ -87,7 +88,12 @@ bool StudyModel::has(const std::string& target) const {
 }
 
 bool StudyModel::may_have(const std::string& target) const {
-  const auto offers = [&](const std::string& beginning) { return std::ranges::binary_search(offered, beginning); };
+  // Elements of a section that is not there have no keys.
+  const FormatKey* section = format_map("model").find(target.substr(0, target.find('.')));
+  const bool of_names = section != nullptr && section->value.starts_with("entries of");
+  const auto offers = [&](const std::string& beginning) {
+    return (!of_names || beginning.find('.') != std::string::npos) && std::ranges::binary_search(offered, beginning);
+  };
   if (offers(target)) return true;
   for (std::size_t dot = target.find('.'); dot != std::string::npos; dot = target.find('.', dot + 1)) {
     if (offers(target.substr(0, dot)) || offers(target.substr(0, dot + 1))) return true;
