@@ -51,11 +51,11 @@ inline constexpr Parameter axis_kind_parameter{.name = "kind",
 
 /// The effort E of a Law of the coordinate s and its rate, in the plane and in space: force -E on b along x_a at P_b,
 /// or torque -E u on b; the opposite on a. Work is -E s' exactly. A Law is made from the parameters and has
-///   effort(s, s')     for numbers and for duals
+///   effort(s, s')     for numbers and for duals; or effort(in, s, s') of a Law whose parameters may follow the motion
 ///   stored(s)         potential energy [J]
 ///   stored_rate(s, s')
-///   doubt(s, slides)  a sentence where s is far outside of what the law is for, else null; a Law may have none
-///   lowest(), highest()  ends of the way of s, of a Law that has them
+///   doubt(s, slides), or doubt(in)  a sentence where s is far outside of what the law is for, else null; a Law may
+///   have none lowest(), highest()  ends of the way of s, of a Law that has them
 template <class Law>
 class AxisForce final : public Joint {
  public:
@@ -79,13 +79,14 @@ class AxisForce final : public Joint {
     const AxisMotion<double> now = motion(x, in.coordinate);
     out.potential = law_.stored(now.value);
     out.potential_rate = law_.stored_rate(now.value, now.rate);
-    pair.write(force(x, now), out);
+    pair.write(force(in, x, now), out);
     if (out.derivatives.empty()) return;
     const RelativeMotion<Dual> slopes = pair.duals();
-    pair.write_derivatives(force(slopes, motion(slopes, in.coordinate)), 24, out);
+    pair.write_derivatives(force(in, slopes, motion(slopes, in.coordinate)), 24, out);
   }
   const char* warning(const JointInput& in) const override {
     if constexpr (requires { law_.doubt(0.0, false); }) return law_.doubt(in.coordinate, slides_);
+    if constexpr (requires { law_.doubt(in); }) return law_.doubt(in);
     return nullptr;
   }
 
@@ -95,8 +96,13 @@ class AxisForce final : public Joint {
     return slides_ ? slide_along_x(x) : turn_about_z(x, coordinate);
   }
   template <class T>
-  RelativeForce<T> force(const RelativeMotion<T>& x, const AxisMotion<T>& now) const {
-    const Vec<T> pull = -(law_.effort(now.value, now.rate) * now.u);
+  T effort(const JointInput& in, const AxisMotion<T>& now) const {
+    if constexpr (requires { law_.effort(in, now.value, now.rate); }) return law_.effort(in, now.value, now.rate);
+    if constexpr (requires { law_.effort(now.value, now.rate); }) return law_.effort(now.value, now.rate);
+  }
+  template <class T>
+  RelativeForce<T> force(const JointInput& in, const RelativeMotion<T>& x, const AxisMotion<T>& now) const {
+    const Vec<T> pull = -(effort(in, now) * now.u);
     if (slides_) return {pull, -cross(x.d, pull), {}};
     return {{}, -pull, pull};
   }

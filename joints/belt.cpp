@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "freeplay/kit/planar_marker.h"
@@ -43,6 +44,7 @@ class Belt final : public Joint {
   }
   void initialize(const JointInput& in, Span<double>, Span<double> history) const override {
     std::ranges::copy(angles(in), history.begin() + turns);
+    refuse_impossible((position(*in.b) - position(*in.a)).norm());
     const Pair pair(*this, in, history);
     for (std::size_t s = 0; s < 2; ++s) history[start + s] = pair.strand[s].x;
     history[started] = 1.0;
@@ -113,6 +115,19 @@ class Belt final : public Joint {
     std::array<Strand, 2> strand;
   };
 
+  /// Strands touch both pulleys where these are farther apart than by |across|.
+  void refuse_impossible(double distance) const {
+    if (distance > std::abs(across())) return;
+    std::array<char, 256> text{};
+    const bool open = sense_ > 0.0;
+    std::snprintf(
+        text.data(), text.size(),
+        "no %s belt fits on its pulleys: their centres are %.4g m apart, and it needs more than %.4g m, the %s "
+        "of their radii, as %s; move them apart%s",
+        open ? "open" : "crossed", distance, std::abs(across()), open ? "difference" : "sum",
+        open ? "one stands inside the other" : "they overlap", open ? "" : ", or take open strands");
+    throw BadParameter("", "starts-inside", text.data());
+  }
   double across() const { return radius_[1] - sense_ * radius_[0]; }
   /// What the stretch alone makes of the tension of strand s; before the start, and in analyses, the pretension.
   double elastic_part(const Pair& pair, std::size_t s, Span<const double> history) const {

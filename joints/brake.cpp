@@ -3,14 +3,14 @@
 namespace freeplay {
 namespace {
 
-/// The same bound both ways, a function of time.
+/// The same bound both ways, a function of time or of the motion.
 class BrakeBounds {
  public:
   explicit BrakeBounds(const Parameters& p) : limit_(p.function("limit")) {}
 
   double time_scale() const { return 0.0; }  // that of the function
-  double upper(double t) const { return std::max(0.0, limit_.at(t).value); }
-  double lower(double t) const { return -upper(t); }
+  double upper(const JointInput& in) const { return std::max(0.0, limit(in)); }
+  double lower(const JointInput& in) const { return -upper(in); }
   Span<const space::BoundEvent> events() const {
     static constexpr space::BoundEvent both[] = {{"slip", 1, Crossing::rising},
                                                  {"stick", 1, Crossing::falling},
@@ -18,11 +18,13 @@ class BrakeBounds {
                                                  {"stick_back", 0, Crossing::rising}};
     return both;
   }
-  const char* doubt(double t) const {
-    return limit_.at(t).value < 0.0 ? "The limit is negative here; the brake is open." : nullptr;
+  const char* doubt(const JointInput& in) const {
+    return limit(in) < 0.0 ? "The limit is negative here; the brake is open." : nullptr;
   }
 
  private:
+  double limit(const JointInput& in) const { return in.functions.empty() ? limit_.at(in.t).value : in.functions[0]; }
+
   TimeFunction limit_;
 };
 
@@ -31,7 +33,8 @@ constexpr Parameter brake_parameters[] = {
     {.name = "limit",
      .kind = ParameterKind::function,
      .unit = "kind: N | N*m",
-     .summary = "Largest force or torque, a function of time; it slips against that."},
+     .summary = "Largest force or torque, a function of time or, under `forces`, of the motion; it slips against that.",
+     .variables = "motion"},
     space::coupling_stiffness_parameter,
     space::coupling_relaxation_parameter};
 
@@ -44,7 +47,7 @@ Component brake() {
        .summary = "Force element: a brake or a friction clutch that holds at rest up to a limit and slips beyond.",
        .formula = "effort on the second body -E, E = stiffness (z + relaxation speed) within +-limit, the strain z' = "
                   "(E/stiffness - z)/relaxation; along x of the first frame or about its z.",
-       .validity = "Sliding and static friction are equal; the limit does not depend on the motion.",
+       .validity = "Sliding and static friction are equal.",
        .references = "Prandtl 1928, ZAMM 8, 85-106 (elastic element in series with a slider)",
        .parameters = brake_parameters});
 }

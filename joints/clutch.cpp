@@ -3,7 +3,7 @@
 namespace freeplay {
 namespace {
 
-/// Nothing one way; the other way all, or as much as a function of time says.
+/// Nothing one way; the other way all, or as much as a function of time or of the motion says.
 class ClutchBounds {
  public:
   explicit ClutchBounds(const Parameters& p) : upwards_(p.word("locks") == 0), limited_(p.given("limit")) {
@@ -11,8 +11,8 @@ class ClutchBounds {
   }
 
   double time_scale() const { return limited_ ? 0.0 : unbounded; }  // 0: that of the function
-  double upper(double t) const { return upwards_ ? limit(t) : 0.0; }
-  double lower(double t) const { return upwards_ ? 0.0 : -limit(t); }
+  double upper(const JointInput& in) const { return upwards_ ? limit(in) : 0.0; }
+  double lower(const JointInput& in) const { return upwards_ ? 0.0 : -limit(in); }
   Span<const space::BoundEvent> events() const {
     static constexpr space::BoundEvent up[] = {{"lock", 0, Crossing::rising},
                                                {"release", 0, Crossing::falling},
@@ -24,12 +24,13 @@ class ClutchBounds {
                                                  {"stick", 0, Crossing::rising}};
     return {upwards_ ? up : down, limited_ ? 4u : 2u};
   }
-  const char* doubt(double t) const {
-    return limited_ && limit_.at(t).value < 0.0 ? "The limit is negative here; the clutch is open." : nullptr;
+  const char* doubt(const JointInput& in) const {
+    return limited_ && given(in) < 0.0 ? "The limit is negative here; the clutch is open." : nullptr;
   }
 
  private:
-  double limit(double t) const { return limited_ ? std::max(0.0, limit_.at(t).value) : unbounded; }
+  double limit(const JointInput& in) const { return limited_ ? std::max(0.0, given(in)) : unbounded; }
+  double given(const JointInput& in) const { return in.functions.empty() ? limit_.at(in.t).value : in.functions[0]; }
 
   bool upwards_, limited_;
   TimeFunction limit_;
@@ -48,7 +49,9 @@ constexpr Parameter clutch_parameters[] = {
      .kind = ParameterKind::function,
      .unit = "kind: N | N*m",
      .default_value = optional,
-     .summary = "Largest force or torque, a function of time, beyond which it slips; without it none."}};
+     .summary = "Largest force or torque, a function of time or, under `forces`, of the motion, beyond which it slips; "
+                "without it none.",
+     .variables = "motion"}};
 
 }  // namespace
 

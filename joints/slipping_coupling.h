@@ -20,17 +20,17 @@ struct BoundEvent {
 /// Spring and damper side by side, in series with a surface that slips. With the speed s' of b against a along x_a or
 /// about z_a, the strain z of the spring (internal), stiffness k and the relaxation time T:
 ///
-///   E = k (z + T s'), but not below `lower(t)` and not above `upper(t)`      z' = (E/k - z)/T
+///   E = k (z + T s'), but not below `lower` and not above `upper`      z' = (E/k - z)/T
 ///
 /// and the effort on b is -E, the opposite on a. Between the bounds z' = s': it holds, and at rest it does so without
 /// any creep. At a bound it slips by s' - z'. Stored: k z^2/2; dissipated: k T z'^2 + E (s' - z'), neither below 0
 /// where lower <= 0 <= upper. E and z' are continuous, so that the state alone says what holds and nothing is switched.
 /// No potential_rate: where nothing passes steps may be long against T, so that the loss is taken from differences.
 /// Bounds has
-///   lower(t), upper(t)  [N or N m], infinite: none
+///   lower(in), upper(in)  [N or N m], infinite: none
 ///   time_scale()        JointLayout::time_scale
 ///   events()            at most `most_events`
-///   doubt(t)            a sentence where the bounds make no sense, else null
+///   doubt(in)           a sentence where the bounds make no sense, else null
 template <class Bounds>
 class SlippingCoupling final : public Joint {
  public:
@@ -84,7 +84,7 @@ class SlippingCoupling final : public Joint {
   void events(const JointInput& in, Span<double> g, Span<double> rate) const override {
     const Effort<double> e = effort(in, motion(pair_of(in).numbers(), in.coordinate).rate);
     const double slope = stiffness_ * (e.strain_rate + relaxation_ * in.history[0]);
-    const std::array<double, 2> at{bounds_.lower(in.t), bounds_.upper(in.t)};
+    const std::array<double, 2> at{bounds_.lower(in), bounds_.upper(in)};
     for (std::size_t i = 0; i < g.size; ++i) {
       const double bound = at[bounds_.events()[i].bound];
       g[i] = std::isfinite(bound) ? e.trial - bound : std::numeric_limits<double>::quiet_NaN();
@@ -93,8 +93,8 @@ class SlippingCoupling final : public Joint {
   }
   void kinks(const JointInput& in, Span<double> g) const override {
     const double trial = effort(in, motion(pair_of(in).numbers(), in.coordinate).rate).trial;
-    g[0] = trial - bounds_.lower(in.t);
-    g[1] = trial - bounds_.upper(in.t);
+    g[0] = trial - bounds_.lower(in);
+    g[1] = trial - bounds_.upper(in);
     for (std::size_t i = 0; i < 2; ++i) {
       if (!std::isfinite(g[i])) g[i] = std::numeric_limits<double>::quiet_NaN();
     }
@@ -103,7 +103,7 @@ class SlippingCoupling final : public Joint {
     channels[0] = in.internal[0];
     channels[1] = effort(in, motion(pair_of(in).numbers(), in.coordinate).rate).slips ? 1.0 : 0.0;
   }
-  const char* warning(const JointInput& in) const override { return bounds_.doubt(in.t); }
+  const char* warning(const JointInput& in) const override { return bounds_.doubt(in); }
 
  private:
   static constexpr Eigen::Index columns = 25;             // of the derivatives
@@ -118,7 +118,7 @@ class SlippingCoupling final : public Joint {
   template <class T>
   Effort<T> effort(const JointInput& in, const T& rate) const {
     const double z = in.internal[0], trial = stiffness_ * (z + relaxation_ * value_of(rate));
-    const double lower = bounds_.lower(in.t), upper = bounds_.upper(in.t);
+    const double lower = bounds_.lower(in), upper = bounds_.upper(in);
     if (trial >= lower && trial <= upper) {
       return {trial, false, stiffness_ * (T(z) + relaxation_ * rate), rate};
     }

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "axis_force.h"
 #include "freeplay/kit/integral_from_zero.h"
 #include "freeplay/kit/planar_marker.h"
@@ -19,13 +21,14 @@ struct Effort {
 
 /// What both classes read: stiffness k, damping c, preload p, the length or angle at which the spring is slack, and
 /// what formulas add.
+/// Those of stiffness, damping and preload that the motion decides are 0 here, and come with JointInput::functions.
 struct Spring {
   explicit Spring(const Parameters& parameters)
       : kind(static_cast<Kind>(parameters.word("kind"))),
-        stiffness(parameters.number("stiffness")),
-        damping(parameters.number("damping")),
+        stiffness(constant(parameters.number("stiffness"))),
+        damping(constant(parameters.number("damping"))),
         free(parameters.number(kind == linear ? "free_length" : "free_angle")),
-        preload(parameters.number("preload")),
+        preload(constant(parameters.number("preload"))),
         spring(parameters.formula("spring")),
         damper(parameters.formula("damper")) {
     if (spring) store_spring();
@@ -35,7 +38,8 @@ struct Spring {
         other, "conflicting-keys",
         std::string("a ") + (kind == linear ? "linear" : "rotational") + " spring has no '" + other + "'");
   }
-  Effort effort(double stretch, double rate) const {
+  static double constant(double number) { return std::isnan(number) ? 0.0 : number; }
+  Effort effort(const JointInput& in, double stretch, double rate) const {
     Effort e{0.0, stiffness, damping, stiffness * stretch + preload};
     if (spring) {
       double slope[1];
@@ -43,6 +47,12 @@ struct Spring {
       e.by_stretch += slope[0];
     }
     e.value = e.restoring + damping * rate;
+    if (!in.functions.empty()) {
+      e.value +=
+          (in.functions[0] - stiffness) * stretch + (in.functions[1] - damping) * rate + in.functions[2] - preload;
+      e.by_stretch += in.functions[0] - stiffness;
+      e.by_rate += in.functions[1] - damping;
+    }
     if (damper) {
       const double at[] = {rate, stretch};
       double slopes[2];
@@ -153,7 +163,7 @@ class SpringDamper final : public Joint {
     out.potential_rate = 0.0;
     if (length < smallest_length) return;
     const Eigen::Vector2d u = d / length;
-    const Effort effort = spring_.effort(length - spring_.free, u.dot(rate));
+    const Effort effort = spring_.effort(in, length - spring_.free, u.dot(rate));
     const double f = effort.value;
     out.potential_rate = effort.restoring * u.dot(rate);
     for (int i = 0; i < 2; ++i) {
@@ -176,7 +186,7 @@ class SpringDamper final : public Joint {
   void twist(const JointInput& in, JointForces& out) const {
     const double stretch = in.coordinate - spring_.free;
     const double rate = angular_velocity(*in.b) - angular_velocity(*in.a);
-    const Effort torque = spring_.effort(stretch, rate);
+    const Effort torque = spring_.effort(in, stretch, rate);
     out.potential = spring_.stored(stretch);
     out.potential_rate = torque.restoring * rate;
     out.wrench_a[5] = torque.value;
@@ -223,7 +233,7 @@ class SpatialSpringDamper final : public Joint {
     out.potential = spring_.stored(now.stretch);
     out.potential_rate = 0.0;
     if (has_no_direction(now)) return;
-    const Effort effort = spring_.effort(now.stretch, now.rate);
+    const Effort effort = spring_.effort(in, now.stretch, now.rate);
     out.potential_rate = effort.restoring * now.rate;
     pair.write(force(now, effort), out);
     if (!out.derivatives.empty()) pair.write_derivatives(force(state(pair.duals(), in.coordinate), effort), 24, out);
@@ -287,12 +297,15 @@ constexpr Parameter spring_damper_parameters[] = {
      .unit = "kind: N/m | N*m/rad",
      .default_value = 0.0,
      .minimum = 0.0,
-     .summary = "Stiffness of the spring."},
+     .summary =
+         "Stiffness of the spring; it, damping and preload may be functions of time or of the motion under `forces`.",
+     .variables = "motion"},
     {.name = "damping",
      .unit = "kind: N*s/m | N*m*s/rad",
      .default_value = 0.0,
      .minimum = 0.0,
-     .summary = "Damping coefficient."},
+     .summary = "Damping coefficient.",
+     .variables = "motion"},
     {.name = "free_length",
      .unit = "m",
      .default_value = 0.0,
@@ -304,7 +317,8 @@ constexpr Parameter spring_damper_parameters[] = {
     {.name = "preload",
      .unit = "kind: N | N*m",
      .default_value = 0.0,
-     .summary = "Constant part that pulls the ends together, or turns the second body clockwise."},
+     .summary = "Part that pulls the ends together, or turns the second body clockwise.",
+     .variables = "motion"},
     {.name = "spring",
      .kind = ParameterKind::formula,
      .unit = "kind: N | N*m",

@@ -396,6 +396,12 @@ class Assembler {
       if (!system_.joints().handle(j).initialize(system_.joints().input(j, point(state), e), internal, history,
                                                  message) ||
           !keeps_finite(internal, history, "initialize", message)) {
+        const JointElement& joint = model_.joints[at(j)];
+        if (message.id[0] != '\0') {
+          throw Error(Error::Category::input, message.id,
+                      fmt::format("{} '{}': {}", joint.is_force ? "force" : "joint", joint.name, message.text),
+                      joint.location);
+        }
         throw Error(Error::Category::plugin, "plugin-failed",
                     fmt::format("joint '{}' of {} failed at its start: {}", model_.joints[at(j)].name,
                                 model_.instances.words_of(*model_.joints[at(j)].component), message.text),

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "freeplay/plugin.h"
@@ -13,6 +14,12 @@
 namespace freeplay {
 
 struct ParameterBlock;
+
+/// Does the table let it depend on the motion?
+inline bool may_follow_motion(const Parameter& parameter) {
+  const bool kind = parameter.kind == ParameterKind::number || parameter.kind == ParameterKind::function;
+  return kind && parameter.variables != nullptr && std::string_view(parameter.variables) == "motion";
+}
 
 /// Numbers of a list, as y, or points of a table.
 struct ParameterPoints {
@@ -22,6 +29,7 @@ struct ParameterPoints {
 /// Value of one entry of a parameter table, SI. What was not written holds its default.
 struct ParameterValue {
   bool given = false;
+  bool by_motion = false;  ///< JointInput::functions has it
   double number = std::numeric_limits<double>::quiet_NaN();
   int word = -1;
   std::array<double, 3> vector{};

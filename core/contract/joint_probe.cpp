@@ -258,7 +258,13 @@ InitialOffset JointProbe::initial_offset(Span<const double> reaction) const {
 void JointProbe::initialize(JointMoment& moment) const {
   Fed fed(*this, moment);
   GuardedNumbers z(moment.z), h(moment.h);
-  if (!run("initialize", &moment, [&](Message& m) { return joint_.initialize(fed.in, z.span(), h.span(), m); })) return;
+  Message refusal;
+  const auto begin = [&](Message& m) {
+    const bool good = joint_.initialize(fed.in, z.span(), h.span(), m);
+    refusal = m;
+    return good || m.id[0] != '\0';
+  };
+  if (!run("initialize", &moment, begin) || refusal.id[0] != '\0') return;  // it may refuse a start
   watch("initialize", fed, {&z, &h});
   moment.z = z.values();
   moment.h = h.values();

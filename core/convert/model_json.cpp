@@ -136,6 +136,7 @@ class ModelWriter {
         return law;
       }
       case ParameterKind::function:
+        if (value.by_motion) return "function of the motion";
         return value.given ? Json("function of time") : Json(nullptr);
       case ParameterKind::formula:
         return value.given ? Json("formula") : Json(nullptr);
@@ -148,6 +149,7 @@ class ModelWriter {
         break;
     }
     if (value.word >= 0) return words_of(parameter).at(at(value.word));
+    if (value.by_motion) return "function of the motion";
     return std::isfinite(value.number) ? number(value.number, unit(parameter, block)) : Json(nullptr);
   }
 

@@ -65,7 +65,7 @@ void read_ends(Draft& draft, const CheckedValue& entry, const std::vector<Checke
 /// `limits: {JOINT: [lowest, highest]}`, JOINT a name or a pattern.
 void read_limits(Draft& draft, const CheckedValue& value) {
   const Part& top = draft.parts.front();
-  for (const CheckedValue& entry : entries_of(value)) {
+  for (const CheckedValue& entry : entries_of(value, MapNames::references)) {
     std::vector<int> joints;
     if (is_pattern(entry.key())) {
       joints = matching(draft, draft.joints, entry, entry.key(), top);
@@ -107,7 +107,7 @@ void read_error(Draft& draft, const CheckedValue& value) {
   const auto input = map.find("input");
   AnalysisSection& analysis = draft.model.analysis;
   if (clearance) {
-    for (const CheckedValue& entry : entries_of(*clearance)) {
+    for (const CheckedValue& entry : entries_of(*clearance, MapNames::references)) {
       const std::optional<double> radius = entry.quantity(dimension::length, not_negative);
       const std::optional<int> joint = draft.find_joint(entry.key(), draft.parts.front());
       if (joint && radius) analysis.clearance.emplace_back(*joint, *radius);

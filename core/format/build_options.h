@@ -29,6 +29,9 @@ struct BuildOptions {
   std::vector<std::string> channels{};                ///< patterns, in place of those of the file
   bool without_study = false;                         ///< the section `study` is not read
   std::vector<std::string>* addresses = nullptr;      ///< receives the paths of the expanded model
+  std::vector<std::string>* offered = nullptr;        ///< receives those of keys that may stand there, written or not
+  /// `set` gives them as maps: what the file has in their place does not count.
+  bool step_by_map = false, integrator_by_map = false;
   /// Reads a list or map of `set`; a file name for messages comes second.
   std::function<std::optional<Document>(std::string, const std::string&, Diagnostics&)> parse_value{};
 };

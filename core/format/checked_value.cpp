@@ -155,6 +155,17 @@ std::optional<Expression> CheckedValue::time_function(const Dimension& dimension
   return expression;
 }
 
+std::optional<Expression> CheckedValue::varying(const Dimension& dimension, const Range& range,
+                                                const ChannelNames& channels) const {
+  std::optional<Expression> constant;
+  if (node_->is_scalar()) constant = compile(*node_, node_->text, 0, true, &channels);
+  if (node_->is_scalar() && !constant) return std::nullopt;
+  if (constant && (constant->depends_on_time() || constant->depends_on_variables())) {
+    return time_function(dimension, 0, &channels);
+  }
+  return quantity(dimension, range) ? constant : std::nullopt;
+}
+
 std::optional<long> CheckedValue::integer(long minimum, long maximum) const {
   const std::optional<double> value = quantity(dimension::none);
   if (!value) return std::nullopt;

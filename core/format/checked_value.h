@@ -36,6 +36,8 @@ class CheckedValue : public LocatedValue {
   /// of these, which cannot be tried.
   std::optional<Expression> time_function(const Dimension& dimension, int derivatives = 2,
                                           const ChannelNames* channels = nullptr) const;
+  /// A constant in `range`, or a function of time and of `channels`; it is used without derivatives by time.
+  std::optional<Expression> varying(const Dimension& dimension, const Range& range, const ChannelNames& channels) const;
   /// A function of time and of `variables`, of whatever dimension.
   std::optional<Expression> formula(const FormulaVariables& variables) const;
   /// A function of `variables` alone, of this dimension.

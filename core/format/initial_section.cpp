@@ -83,10 +83,12 @@ void read_assembly(Draft& draft, const CheckedValue& value) {
 void read_initial(Draft& draft, const CheckedValue& section) {
   MapReader map(section, "initial");
   if (const auto joints = map.find("joints")) {
-    for (const CheckedValue& value : entries_of(*joints)) read_start_value(draft, value, StartKind::coordinate);
+    for (const CheckedValue& value : entries_of(*joints, MapNames::references))
+      read_start_value(draft, value, StartKind::coordinate);
   }
   if (const auto speeds = map.find("speeds")) {
-    for (const CheckedValue& value : entries_of(*speeds)) read_start_value(draft, value, StartKind::speed);
+    for (const CheckedValue& value : entries_of(*speeds, MapNames::references))
+      read_start_value(draft, value, StartKind::speed);
   }
   if (const auto assembly = map.find("assembly")) read_assembly(draft, *assembly);
   map.finish();

@@ -10,6 +10,7 @@
 #include "format/doubtful_number.h"
 #include "format/gear.h"
 #include "format/joint_chain.h"
+#include "format/motion_names.h"
 #include "format/parameter_check.h"
 #include "format/parameter_tree.h"
 #include "format/rotation_keys.h"
@@ -189,7 +190,12 @@ class JointEntry {
 
   void create() {
     JointRef joint, ideal;
-    const CheckedParameters ideal_parameters = check_parameters(*ideal_, map_, draft_.registry);
+    std::vector<MotionChannel> channels;
+    const MotionNames names(draft_, part_, channels);
+    MotionParameters motion(names);
+    const CheckedParameters ideal_parameters =
+        check_parameters(*ideal_, map_, draft_.registry, element().is_force ? &motion : nullptr);
+    if (ideal_parameters.block) motion.give(*ideal_parameters.block, channels, element());
     const bool twins = ideal_ != component_;
     const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal, element().ideal_layout);
     if (component_->description.chain != nullptr && !element().is_force) {

@@ -244,7 +244,9 @@ constexpr FormatKey output[] = {
     {"discard", "quantity", "s", "0", "Time from the start that statistics leave out.", "5 ms"}};
 
 constexpr FormatKey stop[] = {
-    {"channel", "text", "", "required", "A column of the results.", "body.rod.y"},
+    {"channel", "text", "", "", "A column of the results; either this or `value`.", "body.rod.y"},
+    {"value", "quantity", "", "", "A formula of columns and t, which is the column output.stop1, output.stop2, ...",
+     "body.ram.x - body.rod.x"},
     {"above", "quantity", "of the channel", "", "Ends the run when the channel is above; either this or `below`.",
      "1 m"},
     {"below", "quantity", "of the channel", "", "Ends the run when the channel is below.", "0 m"},

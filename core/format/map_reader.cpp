@@ -48,20 +48,29 @@ MapReader::MapReader(const CheckedValue& map, std::string_view format)
 
 MapReader MapReader::empty(const CheckedValue& owner) { return MapReader(owner, NoKeys{}); }
 
+MapReader MapReader::absent(const CheckedValue& owner) {
+  MapReader map(owner, NoKeys{});
+  map.absent_ = true;
+  return map;
+}
+
 std::optional<MapReader::Hit> MapReader::look_up(std::string_view key) const {
   for (const MapLayer& layer : layers_) {
     for (const Node::Entry& entry : layer.map->entries) {
       if (entry.key->text == key) return Hit{&layer, &entry};
     }
   }
-  return std::nullopt;
+  PathOverrides* const added = paths();
+  if (added == nullptr) return std::nullopt;
+  const Node::Entry* entry = added->added(owner_.address_of(std::string(key)));
+  return entry == nullptr ? std::nullopt : std::optional(Hit{nullptr, entry});
 }
 
 CheckedValue MapReader::value_of(const Hit& hit) const {
-  const std::string& path = hit.layer->path;
+  const std::string& path = hit.layer == nullptr ? owner_.path() : hit.layer->path;
   const std::string& key = hit.entry->key->text;
   CheckedValue value = owner_.below(*hit.entry->value, hit.entry->key, path.empty() ? key : path + "." + key, key);
-  value.set_user(hit.layer->user);
+  value.set_user(hit.layer == nullptr ? std::string() : hit.layer->user);
   return value;
 }
 
@@ -77,6 +86,7 @@ std::optional<CheckedValue> MapReader::find(const std::string& key) {
                 "the key '" + key + "' is not in the table of '" + std::string(format_->name) + "'");
   }
   if (!knows(key)) known_.push_back(key);
+  if (paths() != nullptr) paths()->offer(owner_.address_of(key));
   const std::optional<Hit> hit = look_up(key);
   if (!hit) return std::nullopt;
   return value_of(*hit);
@@ -133,17 +143,24 @@ void MapReader::finish() {
   }
 }
 
-std::vector<CheckedValue> entries_of(const CheckedValue& map) {
+std::vector<CheckedValue> entries_of(const CheckedValue& map, MapNames names) {
   std::vector<CheckedValue> entries;
   if (!map.node().is_map()) {
     map.wrong_type("a map");
     return entries;
   }
-  for (const Node::Entry& entry : map.node().entries) {
-    if (is_note(entry.key->text)) continue;
+  const auto add = [&](const Node::Entry& entry) {
     const std::string path = map.path().empty() ? entry.key->text : map.path() + "." + entry.key->text;
     entries.push_back(map.below(*entry.value, entry.key, path, entry.key->text));
+  };
+  std::vector<std::string> written;
+  for (const Node::Entry& entry : map.node().entries) {
+    if (is_note(entry.key->text)) continue;
+    add(entry);
+    if (map.reading().paths != nullptr) written.push_back(entry.key->text);
   }
+  if (map.reading().paths == nullptr || map.address().empty()) return entries;
+  for (const Node::Entry* entry : map.reading().paths->added_names(map.address(), written, names)) add(*entry);
   return entries;
 }
 

@@ -9,6 +9,7 @@
 
 #include "format/checked_value.h"
 #include "format/key_table.h"
+#include "format/path_override.h"
 #include "format/preset.h"
 
 namespace freeplay {
@@ -25,8 +26,11 @@ class MapReader {
   MapReader(const CheckedValue& map, std::string_view format);
   /// A map whose keys the table of a component names.
   explicit MapReader(const CheckedValue& map, Uses uses = Uses::nothing);
-  /// A map without keys in the place of `owner`, such as a law that is given by its name alone.
+  /// A map without keys in the place of `owner`, such as a law that is given by its name alone; the command line may
+  /// add some.
   static MapReader empty(const CheckedValue& owner);
+  /// A map that is not there at all, not even for the command line.
+  static MapReader absent(const CheckedValue& owner);
   /// From here on the keys are those of another map of the format table: the type of the entry is known.
   void follow(std::string_view format) { format_ = &format_map(format); }
 
@@ -53,9 +57,10 @@ class MapReader {
  private:
   struct NoKeys {};
   MapReader(const CheckedValue& owner, NoKeys) : owner_(owner), good_(true) {}
+  PathOverrides* paths() const { return good_ && !absent_ ? owner_.reading().paths : nullptr; }
 
   struct Hit {
-    const MapLayer* layer;
+    const MapLayer* layer;  ///< null: of the command line
     const Node::Entry* entry;
   };
   std::optional<Hit> look_up(std::string_view key) const;
@@ -70,14 +75,15 @@ class MapReader {
 
   CheckedValue owner_;
   const FormatMap* format_ = nullptr;
-  bool good_;
+  bool good_, absent_ = false;
   std::vector<MapLayer> layers_;
   std::vector<std::string> known_;
   std::vector<Refused> refused_;
   std::vector<std::pair<std::string, std::string>> renamed_;
 };
 
-/// The entries of a map from names to something, notes left out; reports `wrong-type` when it is no map.
-std::vector<CheckedValue> entries_of(const CheckedValue& map);
+/// The entries of a map from names to something, notes left out and those of the command line last; reports
+/// `wrong-type` when it is no map.
+std::vector<CheckedValue> entries_of(const CheckedValue& map, MapNames names = MapNames::own);
 
 }  // namespace freeplay

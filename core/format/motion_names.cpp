@@ -130,7 +130,9 @@ std::optional<std::string> MotionNames::frame(const std::string& reference) cons
   if (slash == std::string::npos) {
     const std::string* only = draft_.lone_frame(part_.full(reference));
     if (only == nullptr) only = draft_.lone_frame(reference);
-    return only == nullptr ? std::nullopt : std::optional(*only);
+    if (only != nullptr) return *only;
+    const std::optional<BodyId> body = draft_.find_body(reference, part_);
+    return body ? std::optional(draft_.body_name(*body) + "/origin") : std::nullopt;
   }
   const std::optional<BodyId> body = draft_.find_body(reference.substr(0, slash), part_);
   if (!body) return std::nullopt;
@@ -208,8 +210,10 @@ std::vector<std::string> MotionNames::quantities(const Name& name) const {
 }
 
 std::string MotionNames::nearest(std::string_view name) const {
-  const std::optional<Name> parts = split(name);
+  std::optional<Name> parts = split(name);
   if (!parts) return {};
+  const std::vector<std::string> kinds{"body", "joint", "frame"};
+  if (const std::string kind = freeplay::nearest(parts->kind, kinds); !kind.empty()) parts->kind = kind;
   std::vector<std::string> candidates;
   const auto add = [&](const std::string& kind, const std::string& element) {
     for (const std::string& quantity : quantities({kind, element, {}})) {
@@ -224,15 +228,38 @@ std::string MotionNames::nearest(std::string_view name) const {
       add(kind, element);
     }
   };
+  const bool short_frame = parts->kind == "frame" && parts->element.find('/') == std::string::npos;
   if (parts->kind != "joint" && parts->kind != "frame") add_all("body", draft_.bodies.names());
   if (parts->kind != "body" && parts->kind != "frame") add_all("joint", draft_.joints.names());
   if (parts->kind == "frame") {
-    std::vector<std::string> frames;
-    for (const auto& [frame, unused] : draft_.frames) frames.push_back(frame);
-    std::ranges::sort(frames);
+    const std::vector<std::string> frames = frames_in_order();
+    if (short_frame) {
+      add_all("frame", draft_.bodies.names());
+      for (const std::string& frame : frames) add("frame", frame.substr(frame.find('/') + 1));
+    }
     add_all("frame", frames);
   }
-  return freeplay::nearest(name, candidates);
+  if (short_frame && !frame(parts->element)) {
+    if (std::string first = first_frame(*parts); !first.empty()) return first;
+  }
+  return freeplay::nearest(parts->kind + "." + parts->element + "." + parts->quantity, candidates);
+}
+
+std::vector<std::string> MotionNames::frames_in_order() const {
+  std::vector<std::string> frames;
+  for (const auto& [frame, unused] : draft_.frames) frames.push_back(frame);
+  std::ranges::sort(frames);
+  return frames;
+}
+
+/// A frame is meant that several bodies have: that of the first.
+std::string MotionNames::first_frame(const Name& name) const {
+  std::string quantity = freeplay::nearest(name.quantity, quantities(name));
+  if (quantity.empty()) quantity = "x";
+  for (const std::string& frame : frames_in_order()) {
+    if (frame.ends_with("/" + name.element)) return "frame." + frame + "." + quantity;
+  }
+  return {};
 }
 
 }  // namespace freeplay

@@ -43,6 +43,8 @@ class MotionNames final : public ChannelNames {
   bool follows_from_forces(const Name& name) const;
   bool is_result(const Name& name) const;
   std::vector<std::string> quantities(const Name& name) const;
+  std::vector<std::string> frames_in_order() const;
+  std::string first_frame(const Name& name) const;
 
   Draft& draft_;
   const Part& part_;

@@ -16,16 +16,24 @@ namespace {
 /// Reads the formulas in the order in which they need each other.
 class ColumnReader final : public FormulaVariables {
  public:
-  ColumnReader(const CheckedValue& section, const Channels& channels) {
+  explicit ColumnReader(const Channels& channels) {
     for (const ChannelInfo& channel : channels.all()) all_.emplace(channel.name, channel.unit);
+  }
+  void add(const CheckedValue& section) {
     for (const CheckedValue& entry : entries_of(section)) {
       if (is_name(entry.key())) {
-        entries_.push_back({entry, OutputColumn{prefix + entry.key(), entry.node().text, {}}});
+        add(prefix + entry.key(), entry);
       } else {
         entry.fail_at_key("bad-name", "'" + entry.key() + "' is not a valid name", {}, name_hint(entry.key()));
       }
     }
-    for (std::size_t i = 0; i < entries_.size(); ++i) by_name_.emplace(entries_[i].column.name, i);
+  }
+  void add(const std::string& name, const CheckedValue& formula) {
+    if (by_name_.emplace(name, entries_.size()).second) {
+      entries_.push_back({formula, OutputColumn{name, formula.node().text, {}}});
+    } else {
+      formula.fail("duplicate-name", "'" + name + "' is the column of this condition, and another one in 'columns'");
+    }
   }
 
   std::vector<OutputColumn> read() {
@@ -61,7 +69,11 @@ class ColumnReader final : public FormulaVariables {
     std::ranges::sort(names);
     return freeplay::nearest(name, names);
   }
-  std::string known() const override { return "it may hold t, parameters and the columns of 'freeplay list channels'"; }
+  std::string known() const override {
+    return "it may hold t, parameters and the columns of 'freeplay list channels'; frames have columns where 'frames' "
+           "of "
+           "'output' lists them";
+  }
   /// A column that needs itself.
   std::optional<Refusal> refusal(std::string_view name) const override {
     const auto other = by_name_.find(std::string(name));
@@ -119,10 +131,14 @@ class ColumnReader final : public FormulaVariables {
 
 }  // namespace
 
-void read_output_columns(const CheckedValue& value, Model& model) {
-  if (!value.node().is_map()) return value.wrong_type("a map from names to formulas");
+void read_output_columns(const std::optional<CheckedValue>& columns,
+                         const std::vector<std::pair<std::string, CheckedValue>>& formulas, Model& model) {
+  if (columns && !columns->node().is_map()) return columns->wrong_type("a map from names to formulas");
   const Channels channels(model, true);
-  model.settings.columns = ColumnReader(value, channels).read();
+  ColumnReader reader(channels);
+  if (columns) reader.add(*columns);
+  for (const auto& [name, formula] : formulas) reader.add(name, formula);
+  model.settings.columns = reader.read();
 }
 
 }  // namespace freeplay

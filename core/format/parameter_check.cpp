@@ -32,7 +32,8 @@ ComponentKind law_kind(ParameterKind kind) {
 /// The check of one component's block.
 class ParameterCheck {
  public:
-  ParameterCheck(const Component& component, const Registry& registry) : component_(component), registry_(registry) {
+  ParameterCheck(const Component& component, const Registry& registry, MotionParameters* motion)
+      : component_(component), registry_(registry), motion_(motion) {
     block_.component = &component;
   }
 
@@ -154,7 +155,7 @@ class ParameterCheck {
     if (is_law(parameter.kind)) {
       if (std::isnan(given)) return;
       const Component* preferred = registry_.preferred(law_kind(parameter.kind));
-      MapReader nothing = MapReader::empty(owner);
+      MapReader nothing = MapReader::absent(owner);
       if (preferred != nullptr) good_ = read_law(*preferred, nothing, parameter.name, value) && good_;
     } else if (none) {
       return;
@@ -180,7 +181,7 @@ class ParameterCheck {
       case ParameterKind::vector:
         return read_vector(parameter, unit, written, value);
       case ParameterKind::function:
-        return read_function(unit, written, value);
+        return read_function(parameter, unit, written, value);
       case ParameterKind::formula:
         return read_formula(parameter, unit, written, value);
       case ParameterKind::contact_law:
@@ -205,8 +206,7 @@ class ParameterCheck {
     return {parameter.minimum * unit.factor, parameter.maximum * unit.factor, parameter.open};
   }
 
-  static bool read_number(const Parameter& parameter, const Unit& unit, const CheckedValue& written,
-                          ParameterValue& value) {
+  bool read_number(const Parameter& parameter, const Unit& unit, const CheckedValue& written, ParameterValue& value) {
     const std::vector<std::string> words = words_of(parameter);
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (!written.node().is_scalar() || written.node().text != words[i]) continue;
@@ -220,6 +220,16 @@ class ParameterCheck {
           "'" + written.path() + "' must be a number or " + either(words) + ", not '" + written.node().text + "'",
           meant);
       return false;
+    }
+    if (motion_ != nullptr && may_follow_motion(parameter)) {
+      const auto formula = written.varying(unit.dimension, range_of(parameter, unit), motion_->names());
+      if (!formula) return false;
+      if (formula->depends_on_time() || formula->depends_on_variables()) {
+        motion_->take(parameter, *formula, written, value);
+      } else {
+        value.number = formula->constant().value;
+      }
+      return true;
     }
     const std::optional<double> number = written.quantity(unit.dimension, range_of(parameter, unit));
     if (number) value.number = *number;
@@ -251,9 +261,15 @@ class ParameterCheck {
     return vector.has_value();
   }
 
-  static bool read_function(const Unit& unit, const CheckedValue& written, ParameterValue& value) {
-    std::optional<Expression> expression = written.time_function(unit.dimension);
+  bool read_function(const Parameter& parameter, const Unit& unit, const CheckedValue& written, ParameterValue& value) {
+    const bool by_motion = motion_ != nullptr && may_follow_motion(parameter);
+    std::optional<Expression> expression =
+        written.time_function(unit.dimension, 2, by_motion ? &motion_->names() : nullptr);
     if (!expression) return false;
+    if (expression->depends_on_variables()) {
+      motion_->take(parameter, std::move(*expression), written, value);
+      return true;
+    }
     set_function(value, std::move(*expression), written.node().location_at(0), written.node().verbatim);
     return true;
   }
@@ -347,6 +363,7 @@ class ParameterCheck {
 
   const Component& component_;
   const Registry& registry_;
+  MotionParameters* motion_;
   ParameterBlock block_;
   std::vector<Binding> bindings_;
   std::map<std::string, CheckedValue> places_;
@@ -355,8 +372,9 @@ class ParameterCheck {
 
 }  // namespace
 
-CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry) {
-  return ParameterCheck(component, registry).run(entry);
+CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry,
+                                   MotionParameters* motion) {
+  return ParameterCheck(component, registry, motion).run(entry);
 }
 
 const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,

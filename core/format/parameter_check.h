@@ -9,6 +9,7 @@
 #include "component/instances.h"
 #include "component/registry.h"
 #include "format/map_reader.h"
+#include "format/motion_parameters.h"
 
 namespace freeplay {
 
@@ -19,8 +20,9 @@ struct CheckedParameters {
 };
 
 /// Reads the keys of `entry` that the table of `component` names and makes them known to it; the caller finishes the
-/// entry. Maps within it are finished here.
-CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry);
+/// entry. Maps within it are finished here. With `motion` some may depend on the motion.
+CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry,
+                                   MotionParameters* motion = nullptr);
 
 /// The type `word` of this kind, or null after `unknown-type` at `value`, which may suggest one of `others` too.
 const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,

@@ -23,7 +23,7 @@ bool is_about_form(const std::string& id) { return id == "bad-expression" || id 
 
 ParameterOverrides::ParameterOverrides(const BuildOptions& options, Diagnostics& diagnostics) {
   for (const auto& [name, text] : options.set) {
-    if (PathOverrides::is_path(name)) continue;
+    if (PathOverrides::is_path(name, text)) continue;
     const std::string file = "--set " + name;
     try {
       Expression::compile(text, AnyScope(), true);

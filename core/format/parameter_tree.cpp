@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "component/parameter_block.h"
+
 namespace freeplay {
 
 ParameterTree::ParameterTree(Span<const Parameter> table) {
@@ -45,6 +47,7 @@ std::vector<VariableRow> variables_of(const Parameter& parameter) {
     return std::string(text);
   };
   std::vector<VariableRow> rows;
+  if (may_follow_motion(parameter)) return rows;
   std::string_view rest = parameter.variables == nullptr ? "" : parameter.variables;
   while (!rest.empty()) {
     const std::string_view row = rest.substr(0, rest.find(';'));

@@ -74,6 +74,17 @@ void apply_run_overrides(BuildOptions& options, const ParameterScope& parameters
   const bool has_end = options.end.has_value(), has_integrator = options.integrator.has_value();
   const bool has_ideal = !options.ideal.empty();
   for (const auto& [name, text] : options.set) {
+    const bool map = text.starts_with('{');
+    if (name.starts_with("simulation.step.") || (name == "simulation.step" && map)) {
+      options.step_by_map = true;
+      if (!fixed) options.step.reset(), options.accuracy.reset();
+      continue;
+    }
+    if (name.starts_with("simulation.integrator.") || (name == "simulation.integrator" && map)) {
+      options.integrator_by_map = true;
+      if (!has_integrator) options.integrator.reset();
+      continue;
+    }
     if (!is_run_override(name) || parameters.declares(name)) continue;
     if (name == "simulation.end" && !has_end) {
       options.end = positive_number(name, text, dimension::time, parameters);
@@ -83,8 +94,9 @@ void apply_run_overrides(BuildOptions& options, const ParameterScope& parameters
     } else if (name == "simulation.accuracy" && !fixed) {
       options.accuracy = positive_number(name, text, dimension::length, parameters);
       options.step.reset();
-    } else if (name == "simulation.integrator" && !has_integrator && !text.starts_with('{')) {
+    } else if (name == "simulation.integrator" && !has_integrator) {
       options.integrator = text;
+      options.integrator_by_map = false;
     } else if (name == "ideal" && !has_ideal) {
       options.ideal = joints_of(text, options);
     } else if (chooses_start(name) && !whole_number_of(text, least_of(name))) {

@@ -59,7 +59,7 @@ class SimulationSection {
     settings_.interval = options.interval.value_or(settings_.interval);
     check_interval();
     if (!options.channels.empty()) settings_.channels = options.channels;
-    if (columns_ && !draft_.diagnostics.has_errors()) read_output_columns(*columns_, draft_.model);
+    if (columns_ || !stop_values_.empty()) read_columns();
     create_integrator();
     complete_steps();
     doubt_discard();
@@ -68,6 +68,13 @@ class SimulationSection {
   bool frames_good() const { return frames_good_; }
 
  private:
+  /// Of columns that are in error nothing more is said.
+  void read_columns() {
+    const int errors = draft_.diagnostics.errors();
+    if (errors == 0) read_output_columns(columns_, stop_values_, draft_.model);
+    if (errors > 0 || draft_.diagnostics.errors() > errors) draft_.unsure_columns.emplace_back("output.");
+  }
+
   void read_span(MapReader& map) {
     const auto start = map.find("start");
     const auto end = map.find("end");
@@ -111,6 +118,7 @@ class SimulationSection {
 
   void read_accuracy(MapReader& map) {
     accuracy_ = map.find("accuracy");
+    if (draft_.options.step_by_map) accuracy_.reset();
     if (!accuracy_ || map.conflict("step", "accuracy")) return;
     settings_.accuracy = accuracy_->quantity(dimension::length, positive).value_or(0.0);
     settings_.accuracy_location = accuracy_->location();
@@ -252,7 +260,9 @@ class SimulationSection {
 
   void read_condition(const CheckedValue& value) {
     MapReader map(value, "stop");
-    const auto channel = map.require("channel");
+    const auto channel = map.find("channel"), formula = map.find("value");
+    map.conflict("channel", "value");
+    if (map.good() && !channel && !formula) map.report_missing("channel");
     const auto above = map.find("above");
     const auto below = map.find("below");
     const auto after = map.find("after");
@@ -262,6 +272,11 @@ class SimulationSection {
     stop.location = channel ? channel->location() : value.location();
     stop.above = above.has_value();
     if (channel) stop.channel = channel->string().value_or("");
+    if (formula) {
+      stop.location = formula->location();
+      stop.channel = fmt::format("output.stop{}", settings_.stop.size() + 1);
+      stop_values_.emplace_back(stop.channel, *formula);
+    }
     const auto& limit = above ? above : below;
     // Its dimension is that of the channel, which is unknown until the model is complete.
     if (limit) {
@@ -279,7 +294,8 @@ class SimulationSection {
   void create_integrator() {
     const Component* chosen = nullptr;
     if (integrator_) chosen = read_integrator(*integrator_);
-    const bool by_accuracy = draft_.options.accuracy || (!integrator_ && settings_.accuracy > 0.0);
+    const bool own = integrator_ && draft_.options.integrator_by_map;
+    const bool by_accuracy = !own && (draft_.options.accuracy || (!integrator_ && settings_.accuracy > 0.0));
     if (by_accuracy && !draft_.options.integrator) {
       const Component* best = draft_.registry.preferred(ComponentKind::integrator, 2);
       if (best != nullptr) return use_defaults(*best);
@@ -324,7 +340,7 @@ class SimulationSection {
   void use_defaults(const Component& component) {
     const Node nothing;
     const CheckedValue owner(*draft_.top, nothing, nullptr, "simulation.integrator");
-    MapReader map = MapReader::empty(owner);
+    MapReader map = MapReader::absent(owner);
     create(check_parameters(component, map, draft_.registry), owner);
   }
 
@@ -339,6 +355,7 @@ class SimulationSection {
   Draft& draft_;
   Settings& settings_;
   bool frames_good_ = true;
+  std::vector<std::pair<std::string, CheckedValue>> stop_values_;  ///< and the columns that they become
   std::optional<CheckedValue> integrator_, step_, accuracy_, tolerance_, smallest_, largest_, discard_, interval_,
       columns_;
 };

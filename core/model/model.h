@@ -59,6 +59,12 @@ struct StartValue {
 };
 
 /// A joint or a force between two markers; a gear has rows but no markers of its own.
+/// Where a formula is written; `verbatim`: characters of it are places there.
+struct FormulaPlace {
+  Location begin;
+  bool verbatim = false;
+};
+
 struct JointElement {
   std::string name;
   Location location;                     ///< of the entry
@@ -67,6 +73,9 @@ struct JointElement {
   JointLayout layout;
   int marker_a = 0, marker_b = 0;                    ///< indices into Model::markers
   std::shared_ptr<const ParameterBlock> parameters;  ///< the parameters of the type that is written; null for a gear
+  MotionFormulas by_motion;          ///< of all its parameters that may depend on the motion, where one does
+  std::vector<FormulaPlace> places;  ///< of these
+  std::vector<Expression> in_time;   ///< parts of them that depend on time alone
   // The ideal twin of a joint with play; equal to the above for all others.
   const Component* ideal_component = nullptr;
   JointRef ideal;
@@ -248,8 +257,8 @@ struct Model {
   }
 };
 
-/// Calls `each` with the formulas of all forces and drivers that depend on the motion, in the order in which h keeps
-/// the sides of their switches.
+/// Calls `each` with the formulas of all forces, drivers and joints that depend on the motion, in the order in which h
+/// keeps the sides of their switches.
 template <class Each>
 void for_each_motion_formulas(const Model& model, Each&& each) {
   for (const AppliedForce& force : model.forces) {
@@ -257,6 +266,9 @@ void for_each_motion_formulas(const Model& model, Each&& each) {
   }
   for (const Driver& driver : model.drivers) {
     if (!driver.by_motion.empty()) each(driver.by_motion);
+  }
+  for (const JointElement& joint : model.joints) {
+    if (!joint.by_motion.empty()) each(joint.by_motion);
   }
 }
 

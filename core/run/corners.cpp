@@ -118,7 +118,8 @@ bool Corners::loads_jump(double corner) {
     });
   };
   return std::ranges::any_of(run_.model.forces, one_jumps, &AppliedForce::in_time) ||
-         std::ranges::any_of(run_.model.drivers, one_jumps, &Driver::in_time);
+         std::ranges::any_of(run_.model.drivers, one_jumps, &Driver::in_time) ||
+         std::ranges::any_of(run_.model.joints, one_jumps, &JointElement::in_time);
 }
 
 double Corners::before(double kink) { return kink - margin(kink); }

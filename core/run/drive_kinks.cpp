@@ -20,6 +20,9 @@ DriveKinks::DriveKinks(const Model& model, Of of) {
     for (const AppliedForce& force : model.forces) {
       for (const Expression& component : force.in_time) add(component, model.settings);
     }
+    for (const JointElement& joint : model.joints) {
+      for (const Expression& part : joint.in_time) add(part, model.settings);
+    }
     return;
   }
   for (const InverseKinematics& entry : model.kinematics) {

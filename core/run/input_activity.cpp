@@ -155,6 +155,7 @@ void InputActivity::add_joint(int joint) {
         add("joint", element.name, *written, CornerKind::motion, Unit::other);
     }
   }
+  for (const Expression& part : element.in_time) add("joint", element.name, part, CornerKind::load, Unit::other);
   double corner = 0.0;
   Fault fault;
   if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back({joint});

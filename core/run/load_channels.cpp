@@ -6,7 +6,7 @@
 
 namespace freeplay {
 
-// Switches stand in the order of AppliedForces: forces, then efforts.
+// Switches stand in the order of AppliedForces: forces, then efforts, then joints.
 LoadChannels::LoadChannels(const System& system)
     : channels_(system.model(), system.layout(), system.markers(), system.joints()) {
   const Model& model = system.model();
@@ -27,6 +27,10 @@ LoadChannels::LoadChannels(const System& system)
     if (prescribes(driver.kind)) continue;
     add(driver.by_motion, fmt::format("driver '{}'", driver.name),
         system.joints().layout(driver.joint).coordinate == Coordinate::angle);
+  }
+  for (const JointElement& joint : model.joints) {
+    add(joint.by_motion, fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name),
+        joint.layout.coordinate == Coordinate::angle);
   }
 }
 

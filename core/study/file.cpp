@@ -19,6 +19,7 @@
 #include "format/map_reader.h"
 #include "format/name_rule.h"
 #include "format/path_override.h"
+#include "format/run_override.h"
 #include "load/model_file.h"
 #include "study/document_json.h"
 #include "study/reducer_entry.h"
@@ -402,6 +403,13 @@ std::vector<std::string> StudyFile::named_addresses(const StudyModel& model) con
         });
     if (fits) named.push_back(address);
   }
+  for (const PlannedAxis& axis : axes_) {
+    for (const std::string& target : axis.targets()) {
+      const bool path = PathOverrides::is_path(target) && !is_run_override(target) && model.has(target);
+      if (path && !is_pattern(target) && std::ranges::find(named, target) == named.end()) named.push_back(target);
+    }
+  }
+  std::ranges::sort(named);
   return named;
 }
 

@@ -11,6 +11,7 @@
 #include "base/kept_input.h"
 #include "base/name_pattern.h"
 #include "base/sha256.h"
+#include "format/key_table.h"
 #include "format/model_builder.h"
 #include "format/path_override.h"
 #include "format/run_override.h"
@@ -82,19 +83,35 @@ bool StudyModel::has(const std::string& target) const {
   if (parameters.contains(target)) return true;
   if (is_run_override(target)) return target != "repeat" || has_play;
   if (!PathOverrides::is_path(target)) return false;
-  if (!is_pattern(target)) return std::ranges::binary_search(addresses, target);
+  if (!is_pattern(target)) return std::ranges::binary_search(addresses, target) || may_have(target);
   return std::ranges::any_of(addresses, [&](const std::string& address) { return matches(target, address); });
+}
+
+bool StudyModel::may_have(const std::string& target) const {
+  // Elements of a section that is not there have no keys.
+  const FormatKey* section = format_map("model").find(target.substr(0, target.find('.')));
+  const bool of_names = section != nullptr && section->value.starts_with("entries of");
+  const auto offers = [&](const std::string& beginning) {
+    return (!of_names || beginning.find('.') != std::string::npos) && std::ranges::binary_search(offered, beginning);
+  };
+  if (offers(target)) return true;
+  for (std::size_t dot = target.find('.'); dot != std::string::npos; dot = target.find('.', dot + 1)) {
+    if (offers(target.substr(0, dot)) || offers(target.substr(0, dot + 1))) return true;
+  }
+  return false;
 }
 
 ModelProbe::ModelProbe(const Document& document, const LoadOptions& options)
     : document_(document), registry_(load_registry(options, &document)) {}
 
-ModelProbe::Result ModelProbe::build(const TargetTexts& set, std::vector<std::string>* addresses) const {
+ModelProbe::Result ModelProbe::build(const TargetTexts& set, std::vector<std::string>* addresses,
+                                     std::vector<std::string>* offered) const {
   BuildOptions options;
   options.set = set;
   options.parse_value = parse_yaml;
   options.without_study = true;
   options.addresses = addresses;
+  options.offered = offered;
   Result result;
   Diagnostics diagnostics;
   try {
@@ -119,7 +136,7 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
   made.file = file;
   made.document = std::make_unique<const Document>(std::move(*document));
   const ModelProbe probe(*made.document, options);
-  ModelProbe::Result built = probe.build(set, &made.addresses);
+  ModelProbe::Result built = probe.build(set, &made.addresses, &made.offered);
   for (Diagnostic& error : built.errors) {
     if (built.refused) error.location.file = "--set " + *built.refused;
     if (error.location.file.starts_with("--set ")) {
@@ -129,8 +146,10 @@ std::optional<StudyModel> read_study_model(const std::string& place, const std::
     }
   }
   if (!built.model) return std::nullopt;
-  std::ranges::sort(made.addresses);
-  made.addresses.erase(std::unique(made.addresses.begin(), made.addresses.end()), made.addresses.end());
+  for (std::vector<std::string>* paths : {&made.addresses, &made.offered}) {
+    std::ranges::sort(*paths);
+    paths->erase(std::unique(paths->begin(), paths->end()), paths->end());
+  }
   made.parameters = parameters_of(*made.document);
   made.has_play = built.model->clearance_joints() > 0 || !built.model->ideal.empty();
   made.inputs = built.model->inputs;

@@ -28,9 +28,13 @@ struct StudyModel {
   std::set<std::string> parameters;
   bool has_play = false;               ///< a joint of it can have play
   std::vector<std::string> addresses;  ///< paths of the expanded model, sorted, each once
+  std::vector<std::string> offered;    ///< likewise of keys that it may have; with a dot at its end: of any name below
 
   /// Is there something that a value of this target takes the place of?
   bool has(const std::string& target) const;
+
+ private:
+  bool may_have(const std::string& target) const;
 };
 
 /// SHA-256 of a model: of what it says, apart from a study, and of the files that it reads.
@@ -48,7 +52,8 @@ class ModelProbe {
     std::unique_ptr<Model> model;        ///< null with errors
   };
   /// `addresses` may be null.
-  Result build(const TargetTexts& set, std::vector<std::string>* addresses) const;
+  Result build(const TargetTexts& set, std::vector<std::string>* addresses,
+               std::vector<std::string>* offered = nullptr) const;
   const Registry& registry() const { return registry_; }
 
  private:

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/index.h"
+#include "model/written_formula.h"
 #include "system/evaluation.h"
 #include "system/spatial_kinematics.h"
 
@@ -21,6 +22,12 @@ bool fail(Evaluation& e, int force, int driver, const EvaluationFailure& failure
   return false;
 }
 
+bool fail(Evaluation& e, const Model& model, int joint, std::size_t formula, const EvaluationFailure& failure) {
+  const FormulaPlace& place = model.joints[at(joint)].places[formula];
+  tell_failure(place.begin, place.verbatim, failure, e.fault.message);
+  return e.fault.blame(joint);
+}
+
 }  // namespace
 
 AppliedForces::AppliedForces(const Model& model, const Layout& layout, const Markers& markers, const Joints& joints)
@@ -31,31 +38,40 @@ AppliedForces::AppliedForces(const Model& model, const Layout& layout, const Mar
       channels_(model, layout, markers, joints),
       load_of_force_(model.forces.size(), -1),
       load_of_driver_(model.drivers.size(), -1) {
-  for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) add_load(model.forces[at(f)].by_motion, f, -1);
+  for (int f = 0; f < static_cast<int>(model.forces.size()); ++f) {
+    add_load(model.forces[at(f)].by_motion,
+             {.force = f, .own = {markers_.unknown(model.forces[at(f)].marker), ground}});
+  }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     if (prescribes(model.drivers[at(d)].kind)) continue;
     effort_drivers_.push_back(d);
-    add_load(model.drivers[at(d)].by_motion, -1, d);
+    Load load{.driver = d};
+    own_joint(load, model.drivers[at(d)].joint);
+    add_load(model.drivers[at(d)].by_motion, load);
+  }
+  for (int j = 0; j < joints.count(); ++j) {
+    Load load{.joint = j};
+    own_joint(load, j);
+    add_load(model.joints[at(j)].by_motion, load);
   }
 }
 
-void AppliedForces::add_load(const MotionFormulas& formulas, int force, int driver) {
+void AppliedForces::own_joint(Load& load, int joint) const {
+  load.own[0] = layout_.unknown(joints_[joint].body_a);
+  load.own[1] = layout_.unknown(joints_[joint].body_b);
+}
+
+void AppliedForces::add_load(const MotionFormulas& formulas, const Load& of) {
   if (formulas.empty()) return;
-  (force >= 0 ? load_of_force_[at(force)] : load_of_driver_[at(driver)]) = static_cast<int>(loads_.size());
-  Load& load = loads_.emplace_back();
+  if (of.force >= 0) load_of_force_[at(of.force)] = static_cast<int>(loads_.size());
+  if (of.driver >= 0) load_of_driver_[at(of.driver)] = static_cast<int>(loads_.size());
+  has_functions_ = has_functions_ || of.joint >= 0;
+  Load& load = loads_.emplace_back(of);
   load.formulas = &formulas;
-  load.force = force;
-  load.driver = driver;
   load.first_switch = static_cast<int>(switches_);
-  if (force >= 0) {
-    load.own[0] = markers_.unknown(model_.forces[at(force)].marker);
-  } else {
-    const JointRecord& joint = joints_[model_.drivers[at(driver)].joint];
-    load.own[0] = layout_.unknown(joint.body_a);
-    load.own[1] = layout_.unknown(joint.body_b);
-  }
   switches_ += at(formulas.switches());
   most_channels_ = std::max(most_channels_, formulas.channels.size());
+  most_formulas_ = std::max(most_formulas_, formulas.formulas.size());
 }
 
 void AppliedForces::add_pairs(std::vector<BodyPair>& pairs) {
@@ -100,13 +116,6 @@ void AppliedForces::add_pairs(Load& load, std::vector<BodyPair>& pairs) const {
   load.numbers = square * (pairs.size() - first);
 }
 
-std::string AppliedForces::words_of_switch(int index) const {
-  const auto after = std::ranges::upper_bound(loads_, index, {}, &Load::first_switch);
-  const Load& load = *std::prev(after);
-  if (load.force >= 0) return "force '" + model_.forces[at(load.force)].name + "'";
-  return "driver '" + model_.drivers[at(load.driver)].name + "'";
-}
-
 // Inputs that were set, whatever the time.
 void AppliedForces::take_inputs(const Point& point, Evaluation& e) const {
   std::size_t place = point.h.size();
@@ -126,7 +135,18 @@ bool AppliedForces::add(const Point& point, bool derivatives, Evaluation& e) con
     if (!add_force(f, point, e)) return false;
   }
   if (derivatives) {
-    for (const Load& load : loads_) add_derivatives(load, point, e);
+    for (const Load& load : loads_) {
+      if (!add_derivatives(load, point, e)) return false;
+    }
+  }
+  return true;
+}
+
+bool AppliedForces::set_functions(const Point& point, Evaluation& e) const {
+  if (!has_functions_) return true;
+  for (const Load& load : loads_) {
+    if (load.joint < 0) continue;
+    if (!values(load, point, e, &e.functions[at(joints_[load.joint].functions.offset)])) return false;
   }
   return true;
 }
@@ -160,7 +180,9 @@ bool AppliedForces::values(const Load& load, const Point& point, Evaluation& e, 
   EvaluationFailure failure;
   for (const StateFormula& formula : load.formulas->formulas) {
     if (!formula.value(in, *value++, failure)) {
-      return fail(e, load.force, load.driver, failure);
+      return load.joint < 0 ? fail(e, load.force, load.driver, failure)
+                            : fail(e, model_, load.joint,
+                                   static_cast<std::size_t>(&formula - load.formulas->formulas.data()), failure);
     }
     in.sides += formula.switches();
   }
@@ -207,6 +229,22 @@ bool AppliedForces::add_force(std::size_t index, const Point& point, Evaluation&
 void AppliedForces::on_bodies(const Load& load, const double* value, const Evaluation& e,
                               double (&forces)[2][spatial::velocities]) const {
   const std::size_t width = at(layout_.body_velocities());
+  if (load.joint >= 0) {
+    const JointRecord& joint = joints_[load.joint];
+    double wrenches[12] = {};
+    for (std::size_t i = 0; i < load.formulas->formulas.size(); ++i) {
+      const double* const slopes = &e.function_slopes[12 * (at(joint.functions.offset) + i)];
+      for (std::size_t k = 0; k < 12; ++k) wrenches[k] += value[i] * slopes[k];
+    }
+    by_space(model_.space, [&]<class Bodies>(Bodies) {
+      const int markers[] = {joint.marker_a, joint.marker_b};
+      for (std::size_t k = 0; k < 2; ++k) {
+        std::fill_n(forces[k], width, 0.0);
+        add_wrench(wrenches + 6 * k, e.arms_of<Bodies>()[at(markers[k])], forces[k]);
+      }
+    });
+    return;
+  }
   if (load.force < 0) {
     double row[2 * spatial::velocities], bias = 0.0;
     joints_.coordinate_row(model_.drivers[at(load.driver)].joint, e, row, bias);
@@ -225,15 +263,18 @@ void AppliedForces::on_bodies(const Load& load, const double* value, const Evalu
 
 // With Q = J^T W: dQ = J^T dW/dc (dc/dq dq + dc/dv dv) over the channels c, and what turning its own body does. That
 // the row of a coordinate turns, too, is left out for the effort of a driver, as for one that depends on time.
-void AppliedForces::add_derivatives(const Load& load, const Point& point, Evaluation& e) const {
+bool AppliedForces::add_derivatives(const Load& load, const Point& point, Evaluation& e) const {
+  if (load.joint >= 0 && !find_slopes(load, point, e)) return false;
   const std::size_t width = at(layout_.body_velocities());
   std::fill_n(e.force_q.begin() + static_cast<std::ptrdiff_t>(load.first_number), load.numbers, 0.0);
   std::fill_n(e.force_v.begin() + static_cast<std::ptrdiff_t>(load.first_number), load.numbers, 0.0);
   const StateFormula::Input in = input(load, point, e, e.channel_space);
   const std::span<double> unit(e.channel_space.data() + most_channels_, in.variables.size());
   std::ranges::fill(unit, 0.0);
+  const std::span<double> change(e.channel_space.data() + 2 * most_channels_, most_formulas_);
+  std::ranges::fill(change, 0.0);
   for (std::size_t k = 0; k < in.variables.size(); ++k) {
-    double change[3] = {0.0, 0.0, 0.0}, forces[2][spatial::velocities];
+    double forces[2][spatial::velocities];
     unit[k] = 1.0;
     StateFormula::Input own = in;
     for (std::size_t i = 0; i < load.formulas->formulas.size(); ++i) {
@@ -241,7 +282,7 @@ void AppliedForces::add_derivatives(const Load& load, const Point& point, Evalua
       own.sides += load.formulas->formulas[i].switches();
     }
     unit[k] = 0.0;
-    on_bodies(load, change, e, forces);
+    on_bodies(load, change.data(), e, forces);
     ChannelRows rows[2];
     channels_.rows(load.formulas->channels[k], e, rows);
     for (const Block& block : load.blocks) {
@@ -258,6 +299,39 @@ void AppliedForces::add_derivatives(const Load& load, const Point& point, Evalua
     }
   }
   if (load.force >= 0 && load.own[0] != ground) add_own_turn(load, e);
+  return true;
+}
+
+// Forces are linear in each function between kinks, so that differences are exact but for rounding.
+bool AppliedForces::find_slopes(const Load& load, const Point& point, Evaluation& e) const {
+  const JointRecord& joint = joints_[load.joint];
+  const std::size_t nz = at(joint.internal.size), first = at(joint.functions.offset);
+  const auto add_wrenches = [&](double share, double* slopes) {
+    JointForces out{};
+    std::fill_n(e.rate_space.begin(), nz, 0.0);
+    out.internal_rate = {e.rate_space.data(), nz};
+    if (!joint.joint.apply(Joints::input(joint, point, e), out, e.fault.message)) return e.fault.blame(joint.index);
+    for (std::size_t k = 0; k < 6; ++k) {
+      slopes[k] += share * out.wrench_a[k];
+      slopes[6 + k] += share * out.wrench_b[k];
+    }
+    return true;
+  };
+  constexpr double part = 0x1p-20;
+  for (std::size_t i = first; i < first + at(joint.functions.size); ++i) {
+    double* const slopes = &e.function_slopes[12 * i];
+    std::fill_n(slopes, 12, 0.0);
+    const double there = e.functions[i], low = there - part * std::max(1.0, std::abs(there)),
+                 high = there + part * std::max(1.0, std::abs(there));
+    bool good = true;
+    for (const double end : {low, high}) {
+      e.functions[i] = end;
+      good = good && add_wrenches((end == low ? -1.0 : 1.0) / (high - low), slopes);
+    }
+    e.functions[i] = there;
+    if (!good) return false;
+  }
+  return true;
 }
 
 // A wrench that keeps its direction, or that turns with the body, as the body turns.
@@ -289,105 +363,6 @@ void AppliedForces::add_own_turn(const Load& load, Evaluation& e) const {
     }
     for (int r = 0; r < spatial::velocities; ++r) by_q[12 * r + c] += change[r];
   }
-}
-
-void AppliedForces::decide(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> room,
-                           std::span<double> values, std::span<double> rates) const {
-  std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
-  std::ranges::fill(rates, std::numeric_limits<double>::quiet_NaN());
-  std::size_t next = 0;
-  for (const Load& load : loads_) {
-    const MotionFormulas& formulas = *load.formulas;
-    if (formulas.switches() == 0) continue;
-    StateFormula::Input in = input(load, point, e, room);
-    const std::span<double> changes = room.subspan(most_channels_, in.variables.size());
-    for (std::size_t k = 0; k < changes.size(); ++k) changes[k] = channels_.rate(formulas.channels[k], a, e);
-    for (const StateFormula& formula : formulas.formulas) {
-      const std::size_t count = at(formula.switches());
-      if (count > 0) formula.decide(in, changes, 1.0, values.subspan(next, count), rates.subspan(next, count));
-      next += count;
-      in.sides += count;
-    }
-  }
-}
-
-void AppliedForces::decide(const Point& point, const Evaluation& e, std::span<double> room,
-                           std::span<double> values) const {
-  std::ranges::fill(values, std::numeric_limits<double>::quiet_NaN());
-  std::size_t next = 0;
-  for (const Load& load : loads_) {
-    if (load.formulas->switches() == 0) continue;
-    StateFormula::Input in = input(load, point, e, room);
-    for (const StateFormula& formula : load.formulas->formulas) {
-      const std::size_t count = at(formula.switches());
-      if (count > 0) formula.decide(in, values.subspan(next, count));
-      next += count;
-      in.sides += count;
-    }
-  }
-}
-
-void AppliedForces::scale(const Point& point, double size, const Evaluation& e, std::span<double> room,
-                          std::span<double> scales) const {
-  std::ranges::fill(scales, 0.0);
-  const std::span<double> of_one = room.subspan(2 * most_channels_);
-  std::size_t first = 0;
-  for (const Load& load : loads_) {
-    const MotionFormulas& formulas = *load.formulas;
-    const StateFormula::Input in = input(load, point, e, room);
-    const std::size_t channels = in.variables.size();
-    const std::span<double> unit = room.subspan(most_channels_, channels);
-    std::ranges::fill(unit, 0.0);
-    for (std::size_t k = 0; formulas.switches() > 0 && k <= channels; ++k) {
-      if (k < channels) unit[k] = channels_.turns(formulas.channels[k]) ? 1.0 / size : 1.0;
-      StateFormula::Input own = in;
-      std::size_t next = first;
-      for (const StateFormula& formula : formulas.formulas) {
-        const std::size_t count = at(formula.switches());
-        const std::span<double> values = of_one.first(count), rates = of_one.subspan(count, count);
-        std::ranges::fill(rates, 0.0);
-        if (count > 0) formula.decide(own, unit, k < channels ? 0.0 : 1.0, values, rates);
-        for (const double rate : rates) {
-          if (std::isfinite(rate)) scales[next] += std::abs(rate);
-          ++next;
-        }
-        own.sides += count;
-      }
-      if (k < channels) unit[k] = 0.0;
-    }
-    first += at(formulas.switches());
-  }
-}
-
-bool AppliedForces::take_sides(const Point& point, std::span<const double> a, const Evaluation& e,
-                               std::span<double> room, std::span<double> sides) const {
-  const std::span<double> values = room.subspan(2 * most_channels_, sides.size());
-  const std::span<double> rates = room.subspan(2 * most_channels_ + sides.size(), sides.size());
-  // Rates are wanted where a switch is zero from the start on.
-  decide(point, e, room, values);
-  for (std::size_t s = 0; s < values.size(); ++s) {
-    if (values[s] == 0.0 && sides[s] == 0.0) {
-      decide(point, a, e, room, values, rates);
-      break;
-    }
-  }
-  bool changed = false;
-  std::size_t next = 0;
-  for (const Load& load : loads_) {
-    for (const StateFormula& formula : load.formulas->formulas) {
-      for (int s = 0; s < formula.switches(); ++s, ++next) {
-        const double before = sides[next], value = values[next];
-        if (value > 0.0 || value < 0.0) {
-          sides[next] = value > 0.0 ? 1.0 : -1.0;
-          changed = changed || (before != 0.0 && before != sides[next]);
-        } else if (value == 0.0 && before == 0.0) {
-          sides[next] = formula.side_at_zero(s, rates[next]);
-          changed = true;
-        }
-      }
-    }
-  }
-  return changed;
 }
 
 }  // namespace freeplay

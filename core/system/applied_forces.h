@@ -1,4 +1,5 @@
-// AppliedForces: what drivers by an effort and the forces of the model (Model::forces) exert.
+// AppliedForces: what drivers by an effort and the forces of the model (Model::forces) exert, and the parameters of
+// joints that depend on the motion.
 #pragma once
 
 #include <span>
@@ -15,15 +16,18 @@ class AppliedForces {
  public:
   AppliedForces(const Model& model, const Layout& layout, const Markers& markers, const Joints& joints);
 
-  bool empty() const { return effort_drivers_.empty() && model_.forces.empty(); }
+  bool empty() const { return effort_drivers_.empty() && model_.forces.empty() && loads_.empty(); }
   /// Adds the pairs of bodies by which forces that depend on the motion change (Forces::pairs). Once, when all others
   /// are in the list.
   void add_pairs(std::vector<BodyPair>& pairs);
   /// Numbers of ForceValues::channel_space.
-  std::size_t channel_numbers() const { return 2 * most_channels_; }
+  std::size_t channel_numbers() const { return 2 * most_channels_ + most_formulas_; }
   /// Adds them to ForceValues::force and fills ForceValues::applied and, with `derivatives`, the part of force_q and
   /// force_v that belongs to its pairs. False with Evaluation::fault where an expression has no value.
   bool add(const Point& point, bool derivatives, Evaluation& e) const;
+
+  /// ForceValues::functions where markers and coordinates are. False with Evaluation::fault where one has no value.
+  bool set_functions(const Point& point, Evaluation& e) const;
 
   /// What decides the switches of all formulas (Layout::switches) and its rate for the accelerations `a` of the
   /// unknowns, at an evaluated point (forces or events); NaN where it has none. `room`: switch_numbers() numbers.
@@ -40,7 +44,7 @@ class AppliedForces {
   bool take_sides(const Point& point, std::span<const double> a, const Evaluation& e, std::span<double> room,
                   std::span<double> sides) const;
   std::size_t switch_numbers() const { return 2 * (most_channels_ + switches_); }
-  /// "force 'x'" or "driver 'x'", of whose formula a switch is.
+  /// "force 'x'", "joint 'x'" or "driver 'x'", of whose formula a switch is.
   std::string words_of_switch(int index) const;
 
  private:
@@ -49,17 +53,18 @@ class AppliedForces {
     BodyId row = ground, column = ground;
     std::size_t offset = 0;
   };
-  /// A force, or the effort of a driver, that depends on the motion.
+  /// A force, the effort of a driver, or the parameters of a joint, that depend on the motion.
   struct Load {
     const MotionFormulas* formulas = nullptr;
-    int force = -1, driver = -1;  ///< one of them
+    int force = -1, driver = -1, joint = -1;  ///< one of them
     int first_switch = 0;
     BodyId own[2] = {ground, ground};  ///< unknowns that it acts on
     std::vector<Block> blocks{};
     std::size_t first_number = 0, numbers = 0;  ///< of all its pairs in force_q and force_v
   };
 
-  void add_load(const MotionFormulas& formulas, int force, int driver);
+  void add_load(const MotionFormulas& formulas, const Load& of);
+  void own_joint(Load& load, int joint) const;
   void add_pairs(Load& load, std::vector<BodyPair>& pairs) const;
   bool add_effort(int driver, const Point& point, Evaluation& e) const;
   bool add_force(std::size_t index, const Point& point, Evaluation& e) const;
@@ -67,7 +72,8 @@ class AppliedForces {
   void wrench_of(const AppliedForce& force, const MarkerKinematics& k, const double* value, double* wrench) const;
   void on_bodies(const Load& load, const double* value, const Evaluation& e,
                  double (&forces)[2][spatial::velocities]) const;
-  void add_derivatives(const Load& load, const Point& point, Evaluation& e) const;
+  bool add_derivatives(const Load& load, const Point& point, Evaluation& e) const;
+  bool find_slopes(const Load& load, const Point& point, Evaluation& e) const;
   void add_own_turn(const Load& load, Evaluation& e) const;
   StateFormula::Input input(const Load& load, const Point& point, const Evaluation& e, std::span<double> room) const;
   void take_inputs(const Point& point, Evaluation& e) const;
@@ -80,7 +86,8 @@ class AppliedForces {
   std::vector<int> effort_drivers_;
   std::vector<Load> loads_;
   std::vector<int> load_of_force_, load_of_driver_;  // -1: it depends on time alone
-  std::size_t most_channels_ = 0, switches_ = 0;
+  std::size_t most_channels_ = 0, most_formulas_ = 3, switches_ = 0;
+  bool has_functions_ = false;
 };
 
 }  // namespace freeplay

@@ -48,6 +48,7 @@ struct Evaluation : MarkerValues, JointValues, DriverValues, DrivenValues, Const
     archive(self.force, self.force_q, self.force_v, self.gyroscopic_v, self.internal_derivatives);
     archive(self.coordinate, self.coordinate_rate, self.potential, self.potential_rate, self.wrench);
     archive(self.internal_rate, self.applied, self.acts, self.acting);
+    if (!self.functions.empty()) archive(self.functions);
     archive(self.driven_time, self.motion_time, self.other_motion_time, self.filled, self.time, self.z, self.h);
   }
 };
@@ -79,7 +80,11 @@ inline JointInput Joints::input(const JointRecord& record, const Point& point, c
           e.coordinate_rate[at(record.index)],
           {point.z.data() + record.internal.offset, at(record.internal.size)},
           {point.h.data() + record.history.offset, at(record.history.size)},
-          e.context == nullptr ? 0.0 : e.context->per_contact};
+          e.context == nullptr ? 0.0 : e.context->per_contact,
+          nullptr,
+          nullptr,
+          nullptr,
+          {e.functions.data() + record.functions.offset, at(record.functions.size)}};
 }
 
 }  // namespace freeplay

@@ -56,6 +56,8 @@ ForceValues::ForceValues(const Forces& forces, const Model& model)
       wrench(12 * model.joints.size()),
       internal_rate(at(forces.layout_.nz())),
       applied(6 * model.forces.size()),
+      functions(forces.joints_.functions()),
+      function_slopes(12 * forces.joints_.functions()),
       acts(forces.blocks_.size(), 0) {
   if (model.space == Space::spatial) gyroscopic_v.resize(9 * model.bodies.size());
   const int width = forces.layout_.body_velocities();

@@ -45,6 +45,8 @@ struct ForceValues {
   std::vector<double> wrench;                ///< by joint: 6 numbers on a, 6 on b, at the markers
   std::vector<double> internal_rate;         ///< z'
   std::vector<double> applied;               ///< by applied force: wrench in world axes at its marker
+  std::vector<double> functions;             ///< parameters of joints that depend on the motion
+  std::vector<double> function_slopes;       ///< by these: derivatives of a wrench, 12 numbers
   std::vector<unsigned char> acts;           ///< by force block: whether its wrenches are not all zero
   std::uint64_t acting = 0;                  ///< the same of all blocks together
   // Work space.

@@ -80,6 +80,8 @@ Joints::Joints(const Model& model, Variant variant, const Layout& layout, const 
     r.stands_off = closed && element.has_play;
     r.internal = layout.internal(j);
     r.history = layout.history(j);
+    r.functions = {static_cast<int>(functions_), static_cast<int>(element.by_motion.formulas.size())};
+    functions_ += element.by_motion.formulas.size();
     r.turn = layout.turn(j);
     r.declares_coordinate = model.space == Space::planar && !r.stands_off && r.layout->planar_coordinate != 0;
     r.coordinate_terms = own_terms(*r.layout, r.turn);

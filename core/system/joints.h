@@ -23,7 +23,8 @@ struct JointRecord : JointEnds {
   bool declares_coordinate = false;  ///< it is never asked for it
   unsigned coordinate_terms = 0;     ///< terms that need its coordinate
   Slice internal, history;
-  int turn = -1;  ///< Layout::turn
+  Slice functions;  ///< of ForceValues::functions
+  int turn = -1;    ///< Layout::turn
 
   /// The row of its coordinate is the same always.
   bool declares_angle() const { return declares_coordinate && layout->coordinate == Coordinate::angle; }
@@ -42,6 +43,8 @@ class Joints {
  public:
   Joints(const Model& model, Variant variant, const Layout& layout, const Markers& markers);
 
+  /// Parameters of all joints that depend on the motion.
+  std::size_t functions() const { return functions_; }
   int count() const { return static_cast<int>(records_.size()); }
   const JointRecord& operator[](int index) const { return records_[static_cast<std::size_t>(index)]; }
   const JointRef& handle(int index) const { return (*this)[index].joint; }
@@ -83,6 +86,7 @@ class Joints {
   Variant variant_;
   const Layout& layout_;
   const Markers& markers_;
+  std::size_t functions_ = 0;
   std::vector<JointRecord> records_;  // by joint
   std::vector<InitialOffset> offsets_;
   std::vector<int> asked_;                // for their coordinates

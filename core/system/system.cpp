@@ -70,7 +70,9 @@ bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known,
     return evaluate(point, terms, static_cast<Evaluation&>(out));
   }
   swap(out, known);
-  return (terms & of_joints) == 0 || joints_.evaluate_coordinates(point, terms & of_joints, out);
+  if ((terms & of_joints) == 0) return true;
+  return joints_.evaluate_coordinates(point, terms & of_joints, out) &&
+         ((terms & term_event) == 0 || forces_.applied().set_functions(point, out));
 }
 
 bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
@@ -101,6 +103,7 @@ bool System::fill(const Point& point, unsigned terms, unsigned kept, Evaluation&
   }
   if (!driven_.empty() && e.driven_time != point.t) driven_.place(point, e);
   if (!joints_.evaluate_coordinates(point, terms, e)) return false;
+  if ((terms & (term_force | term_event)) != 0 && !forces_.applied().set_functions(point, e)) return false;
   if ((terms & term_position) != 0 && !constraints_.evaluate(point, terms & ~kept, still, e)) return false;
   return (terms & term_force) == 0 || forces_.evaluate(point, (terms & term_derivative) != 0, e);
 }

@@ -31,6 +31,14 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
                 self.assertAlmostEqual(800 * math.sqrt(1 - sine ** 2), columns["joint.l.fx"][-1], delta=1e-6)
                 self.assertAlmostEqual(sense * (left - right) * sine, columns["joint.l.fy"][-1], delta=1e-6)
 
+    def test_one_that_cannot_lie_on_its_pulleys_is_refused(self):
+        text = self.TEXT % (400, "%s", "0 N*m", "0", 1, "step: 1 ms")
+        for strands, distance, words in (("crossed", "0.169", "more than 0.17 m, the sum of their radii, as they overlap; move them apart, or take open strands"),
+                                         ("open", "0.069", "more than 0.07 m, the difference of their radii, as one stands inside the other; move them apart")):
+            message = self.refusal((text % strands).replace("[0.5, 0]", "[%s, 0]" % distance), id="starts-inside", line=7)[0]
+            self.assertIn(words, message["message"])
+            self.facts((text % strands).replace("[0.5, 0]", "[%s + 0.0011, 0]" % distance))
+
     def test_the_ratio_is_that_of_the_radii(self):
         for strands, ratio in (("open", 5 / 12), ("crossed", -5 / 12)):
             columns = self.run_model(self.TEXT % (400, strands, "0 N*m", "10 rad*smooth(t, 0 s, 0.5 s)", 1,

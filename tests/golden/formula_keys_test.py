@@ -57,6 +57,39 @@ class Formulas(ProgramTest):
                 self.assertIn(words, str(found), found)
                 self.assertEqual(1, len(report["messages"]))
 
+    FRAMES = """freeplay: 1
+bodies:
+  rod: {mass: 1, inertia: 0.1, frames: {tip: [1, 0], end: [2, 0]}}
+  arm: {mass: 1, inertia: 0.1, frames: {end: [1, 0]}}
+joints: {pin: {type: revolute, between: [ground, rod]}, top: {type: revolute, between: [rod/tip, arm]}, a: {type: revolute, between: [rod/end, ground]}}
+forces: {load: {type: torque, on: arm, value: 1 N*%s}}
+"""
+
+    def test_frames_are_suggested_by_any_of_their_names(self):
+        for name, meant in (("frame.rod.q", "frame.rod.x"), ("frame.rd.y", "frame.rod.y"), ("frame.tp.y", "frame.tip.y"),
+                            ("fram.rod/tip.y", "frame.rod/tip.y"), ("frame.end.vx", "frame.arm/end.vx"), ("frame.end.vq", "frame.arm/end.vx"),
+                            ("frame.arm/ed.y", "frame.arm/end.y"), ("bdy.rod.y", "body.rod.y")):
+            with self.subTest(name):
+                self.write("frames.yaml", self.FRAMES % name)
+                report = json.loads(self.freeplay("validate", "frames.yaml", "--json", code=3)[0])
+                self.assertEqual(("unknown-name", meant), (report["messages"][0]["id"], report["messages"][0]["suggestion"]))
+
+    def test_a_body_alone_is_its_own_frame(self):
+        for out, name in (("a", "frame.rod.y"), ("b", "frame.rod/origin.y")):
+            self.write("own.yaml", self.FRAMES.replace(", a: {type: revolute, between: [rod/end, ground]}", "") % name +
+                       "initial: {joints: {pin: 0.3}, speeds: {pin: 1}}\nsimulation: {end: 0.1 s, step: 1 ms}\n")
+            self.freeplay("run", "own.yaml", "--quiet", "--out", out)
+        self.assertEqual(self.read("a", "results.csv"), self.read("b", "results.csv"))
+
+    def test_of_a_column_in_error_nothing_more_is_said(self):
+        for columns in ("{E: body.sled.q, F: 2*output.E}", "{E: 1 m + 1 s}"):
+            self.write("columns.yaml", """freeplay: 1
+bodies: {sled: {mass: 1, inertia: 0.1}}
+simulation: {end: 1, step: 1 ms, output: {columns: %s, channels: ["*", output.E]}, stop: [{channel: output.E, above: 1}]}
+""" % columns)
+            report = json.loads(self.freeplay("validate", "columns.yaml", "--json", code=3)[0])
+            self.assertEqual(1, len(report["messages"]), report["messages"])
+
     def test_a_formula_without_a_value_ends_the_run_at_its_place(self):
         self.write("model.yaml", PUCK % ("1e6 N/m*delta/sqrt(1 - delta/(1 um))", TANH))
         _, errors = self.freeplay("run", "model.yaml", code=4)

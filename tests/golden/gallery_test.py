@@ -186,6 +186,34 @@ class Gallery(ProgramTest):
             if t % 1 < 0.1 or t % 1 > 0.45:
                 self.assertAlmostEqual(-math.pi / 2 * math.floor(t + 0.6), angle, delta=2e-3)
 
+    def test_a_ratchet_goes_on_by_whole_teeth_and_never_back_by_more_than_its_play(self):
+        columns = self.run_file("ratchet")
+        time, angle = columns["time"], columns["joint.wheel.angle"]
+        tooth, stroke = math.radians(30), math.radians(36)
+        rests = []
+        for turn in (0, 1):
+            rows = [row for row, t in enumerate(time) if turn < t <= turn + 1]
+            rests.append(angle[rows[-1]])
+            far = max(rows, key=angle.__getitem__)  # where the lever turns round
+            self.assertAlmostEqual(turn + 0.5, time[far], delta=0.01)
+            self.assertTrue(0 < angle[far] - rests[turn] < stroke - tooth)
+            self.assertGreater(min(angle[row] for row in rows if row >= far), rests[turn] - 2e-4)
+            late = [angle[row] for row in rows if time[row] > turn + 0.8]
+            self.assertLess(max(late) - min(late), 1e-4)
+        self.assertAlmostEqual(tooth, rests[1] - rests[0], delta=1e-4)
+        # At rest both pawls together hold the load: the moment of their forces about the shaft, in the mean over its trembling.
+        root, way = 0.05 - 0.0025 * math.asin(0.85), math.radians(30)
+        pin = (0.04 * math.cos(way), root + 0.04 * math.sin(way))
+
+        def moment(pawl, frame, row):
+            slant = frame + columns["joint.%s_pin.angle" % pawl][row]
+            x = math.cos(frame) * pin[0] - math.sin(frame) * pin[1] - 0.04 * math.cos(slant)
+            y = math.sin(frame) * pin[0] + math.cos(frame) * pin[1] - 0.04 * math.sin(slant)
+            return y * columns["joint.%s.fx" % pawl][row] - x * columns["joint.%s.fy" % pawl][row]
+        rest = [row for row, t in enumerate(time) if t > 1.8]
+        held = sum(moment("hold", 0, row) + moment("push", columns["joint.lever.angle"][row], row) for row in rest) / len(rest)
+        self.assertAlmostEqual(2, held, delta=5e-3)
+
     def test_a_strand_goes_slack_in_the_jerk_of_a_start(self):
         columns = self.run_file("belt-drive")
         tensions = columns["force.belt.left_tension"], columns["force.belt.right_tension"]

@@ -179,6 +179,8 @@ simulation: {end: 1 ms, output: {interval: 0.5 ms}}
             text = text % ("ground, pinion", "ground/w, wheel", joints, ratio)
             self.assertIn(words, self.refusal(text, id="conflicting-keys")[0]["message"])
         self.assertIn("write '20 deg'", self.refusal(EXTERNAL.replace("20 deg", "20"), id="out-of-range", line=10)[0]["suggestion"])
+        self.assertEqual("usual are 14.5 deg, 20 deg and 25 deg",
+                         self.refusal(EXTERNAL.replace("20 deg", "50 deg"), id="out-of-range", line=10)[0]["suggestion"])
         for angle in ("0", "-20 deg", "50 deg", "nan"):
             self.assertEqual(10, self.refusal(EXTERNAL.replace("20 deg", angle))[0]["line"])
         self.refusal(EXTERNAL.replace("pressure_angle", "presure_angle"), id="unknown-key", suggestion="pressure_angle", line=10)

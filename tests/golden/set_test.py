@@ -85,6 +85,81 @@ class Set(ProgramTest):
             with self.subTest(target):
                 self.assertIn(words, self.freeplay("validate", "legs.yaml", "--set", target + "=1", code=2)[1])
 
+    def test_keys_that_the_file_leaves_out_stand_in_the_model(self):
+        model = self.model("joints.arm.pin.clearance.friction={law: coulomb-tanh, mu: 0.2}", "bodies.leg1.rod.velocity.angular=3 rad/s",
+                           "joints.leg2.pin.clearance.initial=loaded", "initial.speeds.arm.pin=2 rad/s", "bodies.frame.frames.tip=[1 m, 0]",
+                           "forces.push={type: torque, on: frame, value: 2 N*m}", "simulation.output.interval=10 us",
+                           "simulation.output.columns.lag=body.frame.x - 1 m", "analysis.error.clearance.leg1.pin=0.1 mm")
+        friction = model["joints"]["arm.pin"]["clearance"]["friction"]
+        self.assertEqual(("coulomb-tanh", 0.2), (friction["law"], friction["mu"]))
+        self.assertEqual("none", model["joints"]["leg1.pin"]["clearance"]["friction"]["law"])
+        self.assertEqual("loaded", model["joints"]["leg2.pin"]["clearance"]["initial"])
+        self.assertEqual(3, model["bodies"]["leg1.rod"]["velocity"]["angular"])
+        self.assertEqual([1, 0], model["bodies"]["frame"]["frames"]["tip"])
+        self.assertEqual("torque", model["forces"]["push"]["type"])
+        self.assertAlmostEqual(1e-5, model["simulation"]["output"]["interval"], delta=1e-18)
+        self.assertEqual(["lag"], list(model["simulation"]["output"]["columns"]))
+
+    def test_a_key_that_is_added_gives_the_bytes_of_one_that_is_written(self):
+        self.write("bare.yaml", LEGS)
+        self.write("full.yaml", LEGS.replace("step: 1 us}", "step: 1 us, integrator: {type: bathe, split: 0.4}}")
+                   .replace("contact: {law: hertz}}", "contact: {law: hertz}, friction: {law: coulomb-tanh, mu: 0.1}}"))
+        frictions = ["joints.%s.pin.clearance.friction={law: coulomb-tanh, mu: 0.1}" % leg for leg in ("leg1", "leg2", "arm")]
+        sets = [word for pair in (*frictions, "simulation.integrator={type: bathe, split: 0.4}") for word in ("--set", pair)]
+        self.freeplay("run", "bare.yaml", "--quiet", "--out", "a", *sets)
+        self.freeplay("run", "full.yaml", "--quiet", "--out", "b")
+        self.assertEqual(self.read("a", "results.csv"), self.read("b", "results.csv"))
+        self.assertEqual(0.4, json.loads(self.read("a", "summary.json"))["settings"]["integrator"]["split"])
+
+    def test_steps_and_integrators_by_maps_stand_before_what_the_file_says(self):
+        accurate = LEGS.replace("step: 1 us", "accuracy: 1 um")
+        for text, sets, size, adaptive, integrator in (
+                (accurate, ["simulation.step={size: 2 us, adaptive: true}"], 2e-6, True, "bathe"),
+                (accurate, ["simulation.step.size=2 us"], 2e-6, False, "bathe"),
+                (accurate, ["simulation.integrator={type: bathe, split: 0.4}"], 1e-8, True, "bathe"),
+                (LEGS, ["simulation.integrator={type: bathe}", "simulation.accuracy=1 um"], 1e-8, True, "bathe"),
+                (LEGS, ["simulation.integrator={type: bathe}", "simulation.integrator=newmark"], 1e-6, False, "newmark"),
+                (LEGS, ["simulation.step={size: 2 us}", "simulation.step=3 us"], 3e-6, False, "bathe"),
+                (LEGS, ["simulation.accuracy=1 um", "simulation.step={size: 2 us}"], 2e-6, False, "bathe")):
+            with self.subTest(sets):
+                self.write("legs.yaml", text)
+                self.freeplay("run", "legs.yaml", "--quiet", "--end", "1 ms", "--out", "a", "--force",
+                              *[word for pair in sets for word in ("--set", pair)])
+                settings = json.loads(self.read("a", "summary.json"))["settings"]
+                self.assertAlmostEqual(size, settings["step"]["size"], delta=1e-3 * size)
+                self.assertEqual((adaptive, integrator), (settings["step"]["adaptive"], settings["integrator"]["type"]))
+
+    def test_a_key_that_may_not_stand_there_is_refused_with_what_may(self):
+        self.write("legs.yaml", LEGS)
+        for target, words in (
+                ("bodies.frame.com.7", "its items have the numbers 0 to 1"),
+                ("bodies.leg1.rod.com.0", "give it as a whole, --set 'bodies.leg1.rod.com=...'"),
+                ("bodies.frame.damping", "here may stand mass, inertia, com, pose, velocity or frames"),
+                ("joints.arm.pin.clearence", "did you mean 'joints.arm.pin.clearance'?"),
+                ("joints.arm.pin.clearance.frction.law", "did you mean 'joints.arm.pin.clearance.friction.law'?"),
+                ("joints.arm.pin.clearance.contact.mu", "here may stand law"),
+                ("simulation.step.adaptive", "it is the value '1 us' and no map: give it as a whole, --set 'simulation.step={...}'"),
+                ("bodies.fram", "did you mean 'bodies.frame'?"),
+                ("bodies.other.mass", "here may stand frame")):
+            with self.subTest(target):
+                self.assertIn(words, self.freeplay("validate", "legs.yaml", "--set", target + "=1", code=2)[1])
+        self.assertIn("did you mean 'arm.pin'?", self.freeplay("validate", "legs.yaml", "--set", "initial.joints.arm.pn=1", code=3)[1])
+
+    def test_studies_vary_keys_that_the_file_leaves_out(self):
+        self.write("legs.yaml", LEGS + """study:
+  set: {simulation.step: {size: 2 us}, initial.joints.arm.pin: 10 deg}
+  axes:
+    friction: {target: joints.arm.pin.clearance.friction, list: [none, {law: coulomb-tanh, mu: 0.1}]}
+    speed: {target: bodies.frame.velocity.angular, list: [0, 1 rad/s]}
+  reducers: {turn: {channel: body.frame.angle, reduce: final}}
+""")
+        self.freeplay("study", "run", "legs.yaml", "--out", "s", "--quiet")
+        rows = [row for row in self.read("s", "study.csv").splitlines() if not row.startswith("#")]
+        self.assertEqual(5, len(rows))
+        self.write("bad.yaml", LEGS + "study: {axes: {f: {target: bodies.frame.velocty.angular, list: [0, 1]}}, "
+                                      "reducers: {turn: {channel: body.frame.angle, reduce: final}}}\n")
+        self.assertIn("did you mean 'bodies.frame.velocity.angular'?", self.freeplay("study", "run", "bad.yaml", "--out", "t", code=3)[1])
+
     def test_a_bad_value_is_shown_at_its_option(self):
         self.write("legs.yaml", LEGS)
         for text, code, words in (("joints.arm.pin.clearance.contact.law=herz", 3, "did you mean 'hertz'?"),

@@ -171,6 +171,12 @@ struct JointInput {
   /// `history` or `internal` there, because it yields or forgets what it stored: JointForces::potential falls by as
   /// much. The host books it as dissipated. Else null.
   double* dissipated = nullptr;
+  /// Values now of the type's parameters that may depend on the motion (Parameter::variables), in the order of its
+  /// table, where the model lets one of them depend on it; else empty, and what the constructor read holds. Forces are
+  /// linear in each between kinks: by them the host differentiates.
+  Span<const double> functions = {};
+  /// Of these the one with this index, or else what was read.
+  double function(std::size_t index, double read) const { return functions.empty() ? read : functions[index]; }
 };
 
 /// Rows of Phi(q,t) = 0. Zeroed by the host.
@@ -237,7 +243,7 @@ class Joint {
   virtual void coordinate(const JointInput&, CoordinateRow&) const {}
   virtual void constrain(const JointInput&, ConstraintRows&) const {}
   virtual void apply(const JointInput&, JointForces&) const {}
-  /// First z and h, at the assembled start.
+  /// First z and h, at the assembled start. One in which the joint cannot be is refused by BadParameter.
   virtual void initialize(const JointInput&, Span<double> /*internal*/, Span<double> /*history*/) const {}
   /// Before every attempt of a step of length dt, also a repeated one: may prepare `history` of the trial state, which
   /// is thrown away with a rejected attempt.

@@ -67,7 +67,8 @@ struct Parameter {
   const char* summary = "";       ///< one sentence for the manual
   // Appended.
   /// Of a formula: its variables and their units, "delta: m; rate: m/s", at most Formula::most_variables. Of a table:
-  /// its x and the unit of that, "speed: m/s".
+  /// its x and the unit of that, "speed: m/s". Of a number or a function "motion": of a force element it may depend on
+  /// time and on channels of the motion, and then stands in JointInput::functions; what the constructor reads is NaN.
   const char* variables = nullptr;
   /// How many numbers a list or points a table may have.
   std::uint32_t least = 1, most = 1000;
