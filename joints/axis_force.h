@@ -54,8 +54,8 @@ inline constexpr Parameter axis_kind_parameter{.name = "kind",
 ///   effort(s, s')     for numbers and for duals; or effort(in, s, s') of a Law whose parameters may follow the motion
 ///   stored(s)         potential energy [J]
 ///   stored_rate(s, s')
-///   doubt(s, slides), or doubt(in)  a sentence where s is far outside of what the law is for, else null; a Law may
-///   have none lowest(), highest()  ends of the way of s, of a Law that has them
+///   doubt(s, slides), or doubt(in)  a sentence where s is far outside of what the law is for, else null; optional
+///   lowest(), highest()  ends of the way of s, of a Law that has them
 template <class Law>
 class AxisForce final : public Joint {
  public:

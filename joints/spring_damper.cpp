@@ -20,8 +20,8 @@ struct Effort {
 };
 
 /// What both classes read: stiffness k, damping c, preload p, the length or angle at which the spring is slack, and
-/// what formulas add.
-/// Those of stiffness, damping and preload that the motion decides are 0 here, and come with JointInput::functions.
+/// what formulas add. Those of stiffness, damping and preload that the motion decides are 0 here, and come with
+/// JointInput::functions.
 struct Spring {
   explicit Spring(const Parameters& parameters)
       : kind(static_cast<Kind>(parameters.word("kind"))),

@@ -58,13 +58,13 @@ struct StartValue {
   Location location;  ///< of its key
 };
 
-/// A joint or a force between two markers; a gear has rows but no markers of its own.
 /// Where a formula is written; `verbatim`: characters of it are places there.
 struct FormulaPlace {
   Location begin;
   bool verbatim = false;
 };
 
+/// A joint or a force between two markers; a gear has rows but no markers of its own.
 struct JointElement {
   std::string name;
   Location location;                     ///< of the entry
