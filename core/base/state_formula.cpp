@@ -149,7 +149,9 @@ bool StateFormula::run_in(const Input& in, const Change& change, const Decided& 
   Number* top = stack;  // one past the last operand
   failure = {};
   const Expression::Instruction* const program = expression_.program_.data();
-  for (std::size_t i = 0; i < switch_of_.size(); ++i) {
+  const bool decides_alone = decided.values != nullptr && !switch_at_.empty();
+  const std::size_t count = decides_alone ? static_cast<std::size_t>(switch_at_.back()) + 1 : switch_of_.size();
+  for (std::size_t i = 0; i < count; ++i) {
     const Expression::Instruction& instruction = program[i];
     switch (instruction.operation) {
       case Operation::push_time:

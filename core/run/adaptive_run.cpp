@@ -92,6 +92,7 @@ bool AdaptiveRun::begin_search(double until, Search& search) {
     return parts_.failure.fail_with(fault, run_.accepted.t());
   }
   const double smallest = control_.limits().smallest;
+  if (parts_.failure.comes_to_end_of_path(search.dt)) return false;
   if (!(search.dt >= smallest)) {
     const bool stuck = run_.solver.regularity() < stuck_there;
     return parts_.failure.fail(

@@ -80,6 +80,7 @@ struct RunContext {
   double error = 0.0;
   bool left_bounds = false;    ///< it ended with numbers that are not finite
   bool ended_inside = false;   ///< it was cut short at an event: the integrator has no memory of its end
+  long restarts = 0;           ///< of the integrator: after each the accelerations at the accepted state may be others
   bool ended_abruptly = true;  ///< the last step: at an event or a kink, after which values change abruptly
 };
 

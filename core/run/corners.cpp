@@ -30,6 +30,7 @@ Corners::Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt)
     : run_(run),
       failure_(failure),
       attempt_(attempt),
+      one_at_end_(run.kinks.one_at_end() || DriveKinks(run.model, DriveKinks::Of::loads).one_at_end()),
       speed_jumps_(run.model.drivers.size()),
       motion_before_(run.model.drivers.size()),
       motion_after_(run.model.drivers.size()),
@@ -71,6 +72,8 @@ bool Corners::next_corner(double dt, double& corner) {
   };
   bool good = next(run_.accepted.t());
   while (good && std::isfinite(corner) && corner - margin(corner) <= run_.accepted.t()) good = next(corner);
+  const double end = run_.settings.end;
+  if (one_at_end_ && before(end) > run_.accepted.t() && end <= until) corner = std::min(corner, end);
   return good || failure_.fail_with(fault, run_.accepted.t());
 }
 
@@ -124,9 +127,13 @@ bool Corners::loads_jump(double corner) {
 
 double Corners::before(double kink) { return kink - margin(kink); }
 
-// To just after others as well that rounding cannot separate from it. Positions stay, the
-// velocities follow the drivers by the least impulse.
+// Nothing follows a corner at which the run ends. Else to just after others as well that rounding cannot separate from
+// it. Positions stay, the velocities follow the drivers by the least impulse.
 bool Corners::pass_kink(double kink) {
+  if (run_.settings.end - kink <= margin(kink)) {
+    run_.accepted.t() = run_.settings.end;
+    return true;
+  }
   if (corner_kind_ == CornerKind::smooth || (corner_kind_ == CornerKind::load && !loads_jump(kink))) {
     run_.accepted.t() = kink;
     return true;

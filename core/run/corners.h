@@ -64,6 +64,7 @@ class Corners {
   RunContext& run_;
   RunFailure& failure_;
   StepAttempt& attempt_;
+  const bool one_at_end_;                             // of the run
   std::optional<InputActivity> inputs_;               // with error control, unless a test blinds it
   std::vector<InputActivity::Unresolved> too_short_;  // changes that it does not see
   CornerKind corner_kind_ = CornerKind::smooth;       // of the corner at which the step being accepted ends

@@ -37,7 +37,13 @@ DriveKinks::DriveKinks(const Model& model, Of of) {
 
 void DriveKinks::add(const Expression& expression, const Settings& settings) {
   FormulaCourse course(expression, settings.start, settings.end);
-  if (course.has_sides()) formulas_.push_back(std::move(course));
+  if (!course.has_sides()) return;
+  formulas_.push_back(std::move(course));
+  const double beside =
+      64.0 * std::numeric_limits<double>::epsilon() * std::max(std::abs(settings.start), std::abs(settings.end));
+  FormulaCourse end(expression, settings.end - beside, settings.end + beside);
+  const double corner = end.next_corner(settings.end - beside, settings.end + beside);
+  one_at_end_ = one_at_end_ || (corner < settings.end + beside && end.near(corner, settings.end + beside).sharp);
 }
 
 double DriveKinks::next(double t, double until) {

@@ -19,6 +19,8 @@ class DriveKinks {
   bool any() const { return !formulas_.empty() || !tables_.empty(); }
   /// The first kink after t, if it is `until` or earlier; else a later time, or infinity. Times grow from step to step.
   double next(double t, double until);
+  /// Whether a formula has one at the very end of the run, which next() need not see: nothing changes its sign before.
+  bool one_at_end() const { return one_at_end_; }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -30,6 +32,7 @@ class DriveKinks {
 
   std::vector<FormulaCourse> formulas_;
   std::vector<const TimeTable*> tables_;
+  bool one_at_end_ = false;
 };
 
 }  // namespace freeplay

@@ -26,7 +26,8 @@ bool RunFailure::fail(int exit_code, std::string reason) {
 
 bool RunFailure::fail_with(const Fault& fault, double t) {
   if (fault.kind == Fault::Kind::motion) {
-    const MotionFault& motion = fault.motion;
+    MotionFault motion = fault.motion;
+    if (motion.force < 0) locate_end_of_motion(t, motion);
     std::string who;
     if (motion.driver >= 0) who = fmt::format("driver '{}': ", run_.model.drivers[at(motion.driver)].name);
     if (motion.force >= 0) who = fmt::format("force '{}': ", run_.model.forces[at(motion.force)].name);
@@ -48,6 +49,31 @@ bool RunFailure::fail_with(const Fault& fault, double t) {
   }
   return fail(5, fmt::format("t = {:.9g} s: joint '{}' of {} failed: {} [plugin-failed]", t, joint.name,
                              run_.model.instances.words_of(*joint.component), fault.message.text));
+}
+
+// A stage of a step finds that drivers have no value at some later time: since when they have none, to rounding.
+void RunFailure::locate_end_of_motion(double& t, MotionFault& fault) {
+  std::vector<TimeValue> values(run_.model.drivers.size());
+  MotionFault found = fault;
+  const auto has_value = [&](double time) {
+    MotionFault there;
+    if (run_.system.motions().evaluate(time, {values.data(), values.size()}, run_.motion_work, there)) return true;
+    found = there;
+    return false;
+  };
+  double known = run_.accepted.t(), lost = t;
+  if (!(known < lost) || !has_value(known) || has_value(lost)) return;
+  fault = found;
+  for (;;) {
+    const double middle = known + 0.5 * (lost - known);
+    if (!(known < middle && middle < lost)) break;
+    if (has_value(middle)) {
+      known = middle;
+    } else {
+      lost = middle, fault = found;
+    }
+  }
+  t = lost;
 }
 
 bool RunFailure::fail_beside(int joint) {
@@ -227,19 +253,33 @@ void RunFailure::explain_dead_point() {
 // Before a path leaves what the mechanism reaches, its inputs turn faster and faster, and no step is short enough; so
 // they do where a formula that finds them comes to the end of where it has a value.
 bool RunFailure::explain_end_of_path() {
-  std::vector<TimeValue> values(run_.model.drivers.size());
-  const double whole = run_.model.settings.end - run_.model.settings.start;
-  for (const double part : {1e-9, 1e-6, 1e-4, 1e-3}) {
-    Fault fault;
-    fault.kind = Fault::Kind::motion;
-    const double t = run_.accepted.t() + part * whole;
-    if (run_.system.motions().evaluate(t, {values.data(), values.size()}, run_.motion_work, fault.motion)) continue;
-    const std::string_view id = fault.motion.id;
-    if (id != "ik-unreachable" && id != "bad-expression") return false;
-    fail_with(fault, t);
-    return true;
+  const double whole = run_.settings.end - run_.settings.start;
+  const double step = run_.adaptive ? 0.0 : run_.settings.step;
+  for (const double ahead : {1e-9 * whole, 1e-6 * whole, 1e-4 * whole, std::max(1e-3 * whole, step)}) {
+    if (ends_within(ahead)) return true;
   }
   return false;
+}
+
+// Whether drivers lose their value so soon after the accepted state; the run is over then.
+bool RunFailure::ends_within(double ahead) {
+  std::vector<TimeValue> values(run_.model.drivers.size());
+  Fault fault;
+  fault.kind = Fault::Kind::motion;
+  const double t = run_.accepted.t() + ahead;
+  if (run_.system.motions().evaluate(t, {values.data(), values.size()}, run_.motion_work, fault.motion)) return false;
+  const std::string_view id = fault.motion.id;
+  if (id != "ik-unreachable" && id != "bad-expression") return false;
+  fail_with(fault, t);
+  return true;
+}
+
+// Before a path leaves what the mechanism reaches, its inputs turn as one over the root of the time left: steps get
+// shorter with it, and rounding of what is prescribed makes them shorter without end.
+bool RunFailure::comes_to_end_of_path(double dt) {
+  constexpr double hopeless_step = 1e-9, near_end = 1e-6;  // of the run
+  const double whole = run_.settings.end - run_.settings.start, ahead = near_end * whole;
+  return dt < hopeless_step * whole && run_.accepted.t() + ahead < run_.settings.end && ends_within(ahead);
 }
 
 // Where constraints have lost rank no step is short enough.

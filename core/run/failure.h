@@ -29,6 +29,9 @@ class RunFailure {
   [[gnu::cold]] bool fail_with(const Fault& fault, double t);
   /// A joint has written past the end of the state's history.
   [[gnu::cold]] bool fail_beside(int joint);
+  /// Whether steps as short as dt [s] are due to drivers that have no value shortly after the accepted state; the run
+  /// is over then.
+  [[gnu::cold]] bool comes_to_end_of_path(double dt);
   /// The formula of an applied force changes its form without end.
   [[gnu::cold]] bool fail_in_switching(const EventStorm::Finding& found);
   [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
@@ -50,7 +53,9 @@ class RunFailure {
   void explain_failure();
 
  private:
+  void locate_end_of_motion(double& t, MotionFault& fault);
   bool explain_end_of_path();
+  bool ends_within(double ahead);
   void explain_singular_position();
   std::string why_singular(double t) const;
   std::string why_beyond_bounds(double t, int joint) const;

@@ -75,9 +75,11 @@ bool FixedRun::step(double until) {
       if (dt < smallest) return parts_.failure.fail(4, parts_.failure.why_not_converged(dt));
       continue;
     }
-    if (last || to_corner) run_.trial.t() = end;
+    const bool run_ends = to_corner && step_corners_.is_last(corner);
+    if (last || to_corner) run_.trial.t() = run_ends ? step_corners_.before(corner) : end;
     if (!parts_.attempt.evaluate_all(run_.trial, run_.e_trial))
       return parts_.failure.fail_with(run_.e_trial->fault, run_.trial.t());
+    run_.trial.t() = last || to_corner ? end : run_.trial.t();
     if (!run_.sleeping.held(dt, run_.e_trial)) continue;
     if (parts_.growth.too_large()) {
       ++run_.outcome.rejected;
@@ -85,7 +87,7 @@ bool FixedRun::step(double until) {
       if (dt < smallest) return parts_.failure.fail(4, parts_.failure.why_energy_grows(dt, parts_.growth.gained()));
       continue;
     }
-    return accept(corner);
+    return accept(run_ends ? unbounded : corner);
   }
 }
 
@@ -102,7 +104,8 @@ double FixedRun::fastest_turn() const {
 // A blow inside the step does work.
 bool FixedRun::accept(double corner) {
   for (const auto& [kink, of_motion] : step_corners_.all()) {
-    if (of_motion && kink <= run_.trial.t() && parts_.corners.note_jumps(kink)) parts_.corners.book_jump(kink);
+    if (of_motion && kink <= run_.trial.t() && !step_corners_.is_last(kink) && parts_.corners.note_jumps(kink))
+      parts_.corners.book_jump(kink);
   }
   parts_.motion_loads.note();
   const bool has_energy = step_corners_.add_energy();

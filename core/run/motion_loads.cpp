@@ -12,16 +12,18 @@ namespace freeplay {
 namespace {
 
 constexpr double no_departure = std::numeric_limits<double>::infinity();
-constexpr double shown_part = 0.01;          // of a formula's range in the step
-constexpr double hidden_part = 0.1;          // of its range in the run: more is not shown by steps of one size
-constexpr double finest_span = 1e-9;         // of the step: shorter spans are not halved
-constexpr double same_begin = 1.0 / 64.0;    // to which it is known where something begins
-constexpr double late_part = 0.125;          // what begins later in the step is left to the next
-constexpr double next_longest = 4.0;         // the next step to try, of one that had to be shortened
-constexpr double least_part = 1e-6;          // of a step that it is shortened to at once
-constexpr double no_change = 1e-12;          // of the largest value
-constexpr int most_looks_at_formula = 4000;  // at a formula in a step
-constexpr int most_looks_at_ends = 200;      // in one of one size
+constexpr double shown_part = 0.01;        // of a formula's range in the step
+constexpr double hidden_part = 0.1;        // of its range in the run: more is not shown by steps of one size
+constexpr double finest_span = 1e-9;       // of the step: shorter spans are not halved
+constexpr double same_begin = 1.0 / 64.0;  // to which it is known where something begins
+constexpr double late_part = 0.125;        // what begins later in the step is left to the next
+constexpr double next_longest = 4.0;       // the next step to try, of one that had to be shortened
+constexpr double least_part = 1e-6;        // of a step that it is shortened to at once
+constexpr double no_change = 1e-12;        // of the largest value
+constexpr double narrowest_box = 4.0, widest_box = 256.0;  // see Formula::box_steps
+constexpr int rest_without_box = 16;                       // steps until a box is tried again
+constexpr int most_looks_at_formula = 4000;                // at a formula in a step
+constexpr int most_looks_at_ends = 200;                    // in one of one size
 
 }  // namespace
 
@@ -34,7 +36,10 @@ MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.al
       FormulaBounds bounds(formula);
       // In steps of one size nothing ends where a switch changes its side.
       const bool watched = bounds.may_hide() || (!run.adaptive && formula.switches() > 0);
-      if (watched) own.formulas.push_back({.bounds = std::move(bounds), .first_switch = first});
+      if (watched) {
+        own.formulas.push_back({.bounds = std::move(bounds), .first_switch = first});
+        own.formulas.back().box.resize(load.formulas->channels.size());
+      }
       first += formula.switches();
       switches = std::max(switches, at(formula.switches()));
     }
@@ -233,6 +238,7 @@ void MotionLoads::note() {
   follow_ends();
   bool open = false;
   for (Load& load : loads_) {
+    load.motion.reach(std::span(reaches_).first(load.end_values.size()));
     for (Formula& formula : load.formulas) {
       formula.open = is_open(load, formula);
       open = open || formula.open;
@@ -248,13 +254,22 @@ void MotionLoads::note() {
   }
 }
 
+// Where the last step ended and nothing has happened since, this one begins with what was found there.
 void MotionLoads::follow_ends() {
   const double start = run_.accepted.t();
+  const bool known = start == followed_until_ && run_.restarts == restarts_then_;
   for (Load& load : loads_) {
-    channels_.follow(*load.load, run_.accepted.a(), run_.e_accepted, load.motion.end(0));
-    channels_.follow(*load.load, run_.trial.a(), run_.e_trial, load.motion.end(MotionPieces::count));
+    const std::span<Jet> begin = load.motion.end(0), end = load.motion.end(MotionPieces::count);
+    if (known) {
+      std::ranges::copy(end, begin.begin());
+    } else {
+      channels_.follow(*load.load, run_.accepted.a(), run_.e_accepted, begin);
+    }
+    channels_.follow(*load.load, run_.trial.a(), run_.e_trial, end);
     load.motion.take(start, run_.trial.t() - start);
   }
+  followed_until_ = run_.trial.t();
+  restarts_then_ = run_.restarts;
 }
 
 double MotionLoads::allowed(const Formula& formula) {
@@ -262,12 +277,23 @@ double MotionLoads::allowed(const Formula& formula) {
   return std::max({formula.beyond, hidden_part * (formula.high - formula.low), no_change * largest});
 }
 
-// Notes what a formula is at both ends. Whether it can go beyond, as far as the ranges of its channels in the whole
-// step show: most steps are a small part of the way, and nothing more need be looked at.
+// Whether a formula can go beyond what it is at both ends, as far as the ranges of its channels in the whole step show:
+// most steps are a small part of the way, and nothing more need be looked at.
 bool MotionLoads::is_open(const Load& load, Formula& formula) {
-  const std::size_t channels = load.load->formulas->channels.size();
-  const std::span<double> values(values_.data(), channels);
   double low = unbounded, high = -unbounded;
+  if (in_box(load, formula) || find_box(load, formula)) {
+    if (formula.low > formula.in_box.low || formula.high < formula.in_box.high) note_ends(load, formula, low, high);
+    return false;
+  }
+  if (!note_ends(load, formula, low, high)) return false;
+  const std::span<const Interval> reaches(reaches_.data(), load.end_values.size());
+  const Interval range = formula.bounds.values(reaches, {load.motion.time(0.0), load.motion.time(1.0)});
+  return !(std::max(range.high - high, low - range.low) <= allowed(formula));
+}
+
+// What a formula is at both ends of the step. False where it has no value there.
+bool MotionLoads::note_ends(const Load& load, Formula& formula, double& low, double& high) {
+  const std::span<double> values(values_.data(), load.end_values.size());
   for (const std::size_t k : {std::size_t{0}, MotionPieces::count}) {
     load.motion.values_at_end(k, values);
     const double t = k == 0 ? run_.accepted.t() : run_.trial.t();
@@ -280,10 +306,38 @@ bool MotionLoads::is_open(const Load& load, Formula& formula) {
     formula.end_time = t, formula.end_value = here;
   }
   formula.low = std::min(formula.low, low), formula.high = std::max(formula.high, high);
-  const std::span<Interval> reaches(reaches_.data(), channels);
-  load.motion.reach(reaches);
-  const Interval range = formula.bounds.values(reaches, {load.motion.time(0.0), load.motion.time(1.0)});
-  return !(std::max(range.high - high, low - range.low) <= allowed(formula));
+  return true;
+}
+
+bool MotionLoads::in_box(const Load& load, const Formula& formula) const {
+  if (!(load.motion.time(1.0) <= formula.box_until)) return false;
+  for (std::size_t c = 0; c < formula.box.size(); ++c) {
+    if (!(reaches_[c].low >= formula.box[c].low && reaches_[c].high <= formula.box[c].high)) return false;
+  }
+  return true;
+}
+
+// Some steps wide to all sides, if the formula stays within half of what it may be off there, so that no step is open.
+bool MotionLoads::find_box(const Load& load, Formula& formula) {
+  formula.box_until = -unbounded;
+  if (formula.steps_to_box-- > 0) return false;
+  formula.steps_to_box = 0;
+  for (std::size_t c = 0; c < formula.box.size(); ++c) {
+    const double more = formula.box_steps * (reaches_[c].high - reaches_[c].low);
+    formula.box[c] = {reaches_[c].low - more, reaches_[c].high + more};
+  }
+  const double until = load.motion.time(1.0 + formula.box_steps);
+  const Interval range = formula.bounds.values(formula.box, {load.motion.time(0.0), until});
+  if (!(range.high - range.low <= 0.5 * allowed(formula))) {
+    formula.box_steps *= 0.5;
+    if (formula.box_steps < narrowest_box) formula.box_steps = narrowest_box, formula.steps_to_box = rest_without_box;
+    return false;
+  }
+  const double rounded = no_change * std::max(std::abs(range.low), std::abs(range.high));
+  formula.in_box = {range.low - rounded, range.high + rounded};
+  formula.box_until = until;
+  formula.box_steps = std::min(1.5 * formula.box_steps, widest_box);
+  return true;
 }
 
 void MotionLoads::note(const Load& load, Formula& formula) {

@@ -48,6 +48,13 @@ class MotionLoads {
     double beyond = 0.0, at = 0.0;                    ///< farthest beyond both ends of a step, and when [s]
     bool open = false;                                ///< whether more is to be known of it than a first look shows
     double end_time = std::nan(""), end_value = 0.0;  ///< of the step before
+    /// Where the channels may be until a time while the formula stays in a range that is too narrow to hide anything;
+    /// empty: not known. Many steps are in one.
+    std::vector<Interval> box{};
+    Interval in_box{};
+    double box_until = -unbounded;
+    double box_steps = 16.0;  ///< to all sides of the step for which the next is looked for
+    int steps_to_box = 0;     ///< before that is worth while
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.low, self.high, self.beyond, self.at);
@@ -82,6 +89,9 @@ class MotionLoads {
   bool follow(Fault& fault);
   void follow_ends();
   bool is_open(const Load& load, Formula& formula);
+  bool in_box(const Load& load, const Formula& formula) const;
+  bool find_box(const Load& load, Formula& formula);
+  bool note_ends(const Load& load, Formula& formula, double& low, double& high);
   double resolved(const Load& load, const Formula& formula);
   bool show(Course& course);
   double value(const Course& course, double s);
@@ -100,6 +110,8 @@ class MotionLoads {
   LoadChannels channels_;
   std::vector<Load> loads_;
   double longest_ = unbounded;
+  double followed_until_ = std::nan("");  ///< where the last step ended [s], after so many restarts
+  long restarts_then_ = 0;
   std::vector<IntervalJet> ranges_;
   std::vector<Interval> reaches_;
   std::vector<Jet> middles_;

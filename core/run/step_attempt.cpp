@@ -184,6 +184,7 @@ bool StepAttempt::check_step(double dt) {
 
 // An event changes history or internal variables, and with them what acts.
 bool StepAttempt::restart() {
+  ++run_.restarts;
   StateView view = run_.accepted.view();
   run_.solver.use_history(run_.accepted.h());
   Message message;

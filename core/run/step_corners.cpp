@@ -37,6 +37,10 @@ void StepCorners::list(double until) {
   };
   add(run_.kinks, true);
   add(load_kinks_, false);
+  const double end = run_.settings.end;
+  const bool one_at_end = run_.kinks.one_at_end() || load_kinks_.one_at_end();
+  if (one_at_end && until >= end - near_ && corners_.size() < corners_.capacity())
+    corners_.push_back({end, run_.kinks.one_at_end()});
   std::ranges::sort(corners_, {}, &Corner::time);
 }
 

@@ -26,6 +26,9 @@ class StepCorners {
   /// Where a step that ends at a corner takes its forces from.
   double before(double corner) const { return corner - near_; }
 
+  /// Whether the run ends there: nothing is to follow such a corner.
+  bool is_last(double corner) const { return corner >= run_.settings.end - near_; }
+
   /// The energy of the step that was just made, if corners are inside or at its end. Else, or where something cannot
   /// be evaluated, false and nothing is done.
   bool add_energy();

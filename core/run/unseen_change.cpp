@@ -20,6 +20,7 @@ constexpr int parts = 64;                 // of a step, to see how far a change 
 constexpr double fewest_looks = 8.0;      // at a step
 constexpr double enough_looks = 1e6;
 constexpr double unchanged = 1e-9;  // of the largest value
+constexpr double rounded = 4.0;  // roundings: between the polynomial of ends, whose weights sum up to 2.2, and a value
 
 const Interval& signal(const IntervalJet& range, int derivative) {
   return derivative == 0 ? range.value : derivative == 1 ? range.rate : range.acceleration;
@@ -64,6 +65,48 @@ struct Sight {
     return beyond > std::max(little_of_run * (run_high - run_low), unchanged * largest);
   }
 };
+
+}  // namespace
+
+namespace {
+
+/// How far a derivative of a table may be off because its times and values are rounded, at each of its points:
+///
+///   slopes          s = (y1 - y0)/(t1 - t0)    by u (|y0| + |y1| + |s| (|t0| + |t1|))/(t1 - t0)
+///   second ones     which row i of the spline's system takes from 6 (s1 - s0)/(t2 - t0), and its neighbours half of it
+std::vector<double> rounding_of(const TimeTable& table, int derivative) {
+  constexpr double unit = std::numeric_limits<double>::epsilon();
+  const std::span<const double> t = table.times(), y = table.values();
+  const std::size_t n = t.size();
+  std::vector<double> slopes(n + 1, 0.0), lengths(n + 1, 0.0), out(n, 0.0);  // of the piece before each point
+  for (std::size_t i = 1; i < n; ++i) {
+    const double h = lengths[i] = t[i] - t[i - 1], slope = (y[i] - y[i - 1]) / h;
+    const double values = std::abs(y[i - 1]) + std::abs(y[i]), times = std::abs(t[i - 1]) + std::abs(t[i]);
+    slopes[i] = unit * (values + std::abs(slope) * times) / h;
+  }
+  if (derivative == 0 || (derivative == 2 && table.is_straight())) {
+    for (std::size_t i = 0; i < n && derivative == 0; ++i) out[i] = 2.0 * unit * std::abs(y[i]);
+    return out;
+  }
+  if (!table.is_straight()) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = 6.0 * (slopes[i] + slopes[i + 1]) / (lengths[i] + lengths[i + 1]);
+    for (std::size_t i = 1; i < n; ++i) out[i] = std::max(out[i], 0.5 * out[i - 1]);
+    for (std::size_t i = n - 1; i > 0; --i) out[i - 1] = std::max(out[i - 1], 0.5 * out[i]);
+  }
+  for (std::size_t i = 0; i < n && derivative == 1; ++i) {
+    out[i] = std::max(slopes[i] + lengths[i] * out[i], slopes[i + 1] + lengths[i + 1] * out[i]);
+  }
+  return out;
+}
+
+/// The largest in [from, to]; of a table that is repeated, in all of it.
+double rounding_within(const TimeTable& table, std::span<const double> rounding, double from, double to) {
+  const std::span<const double> t = table.times();
+  if (from < t.front() || to > t.back()) return *std::ranges::max_element(rounding);
+  const auto first = std::max(std::ranges::upper_bound(t, from) - t.begin() - 1, std::ptrdiff_t{0});
+  const auto last = std::min(std::ranges::lower_bound(t, to) - t.begin(), std::ssize(t) - 1);
+  return *std::max_element(rounding.begin() + first, rounding.begin() + last + 1);
+}
 
 }  // namespace
 
@@ -193,10 +236,13 @@ std::optional<UnseenChange::Found> UnseenChange::of(const TimeTable& table, doub
                                                     int derivative) {
   UnseenChange change(from, to, step, derivative);
   change.note_range(table);
+  const std::vector<double> rounding = rounding_of(table, derivative);
   Window window;
   double now = 0.0;
-  for (double t = from; t < to; t += 4.0 * step) {
+  for (double begin = from; begin < to; begin += 4.0 * step) {
+    const double t = std::max(from, std::min(begin, to - 4.0 * step));  // nothing follows the end of the run
     if (!(table.next_point(t) < t + 4.0 * step) || !change.look(table, t, window)) continue;
+    window.allowed = std::max(window.allowed, rounded * rounding_within(table, rounding, t, window.end));
     std::optional<double> found = table.is_straight() ? std::nullopt : change.between(table, window);
     for (double point = t; point < window.end && !found;) {
       const double next = table.next_point(point);

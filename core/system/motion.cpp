@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "system/path_place.h"
 
 namespace freeplay {
 namespace {
@@ -94,12 +95,16 @@ bool Motions::reaches(int driver, double t, const CrankPose& pose, MotionFault& 
   fault.driver = driver;
   fault.kinematics = model_.drivers[static_cast<std::size_t>(driver)].kinematics;
   fault.id = "ik-unreachable";
-  const auto end =
-      fmt::format_to_n(fault.text, sizeof fault.text - 1,
-                       "leg of '{}' cannot reach the path at t = {} s: its pins are {:.6g} m apart, the leg "
-                       "reaches from {:.6g} m to {:.6g} m",
-                       leg.name, t, pose.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler);
-  *end.out = '\0';
+  char* const end = fault.text + sizeof fault.text - 1;
+  const auto room = [&](const char* to) { return static_cast<std::size_t>(end - to); };
+  char* to =
+      fmt::format_to_n(fault.text, room(fault.text), "leg of '{}' cannot reach the path at t = {:.9g} s", leg.name, t)
+          .out;
+  to = write_place_on_path(model_, fault.kinematics, t, to, end);
+  to = fmt::format_to_n(to, room(to), ": its pins are {:.6g} m apart, the leg reaches from {:.6g} m to {:.6g} m",
+                        pose.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler)
+           .out;
+  *to = '\0';
   return false;
 }
 

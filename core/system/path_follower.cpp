@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/index.h"
+#include "system/path_place.h"
 
 namespace freeplay {
 namespace {
@@ -193,21 +194,13 @@ const State& PathFollower::nearest(double t) const {
 void PathFollower::fail(double t, MotionFault& fault) const noexcept {
   fault.kinematics = paths_.front().kinematics;
   fault.id = "ik-unreachable";
-  const FramePath& path = model_.kinematics[at(fault.kinematics)].path;
   const bool several = fault.kinematics != paths_.back().kinematics;
-  char* to = fault.text;
-  const auto add = [&](const char* words, double number, const char* unit) {
-    const std::ptrdiff_t room = fault.text + sizeof fault.text - 1 - to;
-    to = fmt::format_to_n(to, static_cast<std::size_t>(room), "{}{:.9g}{}", words, number, unit).out;
-  };
-  add("the mechanism cannot follow the path at t = ", t, several ? " s (of this entry or another)" : " s");
-  PathPose pose;
-  EvaluationFailure none;
-  const std::size_t lengths = model_.space == Space::planar ? 2 : 3;
-  if (path.gives_all(lengths) && path.evaluate(t, pose, none)) {
-    constexpr const char* words[] = {", where x = ", ", y = ", ", z = "};
-    for (std::size_t i = 0; i < lengths; ++i) add(words[i], pose[i].value, " m");
-  }
+  char* const end = fault.text + sizeof fault.text - 1;
+  char* to =
+      fmt::format_to_n(fault.text, sizeof fault.text - 1, "the mechanism cannot follow the path at t = {:.9g} s{}", t,
+                       several ? " (of this entry or another)" : "")
+          .out;
+  to = write_place_on_path(model_, fault.kinematics, t, to, end);
   *to = '\0';
 }
 

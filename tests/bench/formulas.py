@@ -1,4 +1,4 @@
-"""What formulas of the motion cost: loading and stepping from 100 to 10 000 of them, and one beside the same load in C++.
+"""What formulas of the motion cost: loading and runs with 100 to 10 000 of them, and one beside the same load in C++.
 
 All of it is counted in machine instructions by valgrind, which repeat on a busy machine."""
 import os
@@ -82,6 +82,9 @@ BESIDE = (("smooth, steps of 0.1 ms", SMOOTH, ["--step", "1e-4"]), ("with abs, s
           ("smooth, accuracy 1e-6 m", SMOOTH, ["--accuracy", "1e-6"]), ("with abs, accuracy 1e-6 m", KINKED, ["--accuracy", "1e-6"]))
 
 
+GROWTH = ["formulas", "number", "instructions of loading, each", "of a step, each", "of all else in a run, each"]
+
+
 def write(bench, name, text):
     path = os.path.join(bench.build, "models", name + ".yaml")
     os.makedirs(os.path.dirname(path), exist_ok=True)
@@ -103,21 +106,25 @@ def whole(bench, *words):
 
 
 def growth(bench):
-    """By kind: instructions of reading and checking, and of a step, of each formula."""
+    """By kind: instructions of reading and checking, of a step, and of all else in a run (assembly, rows, summary), of each formula."""
     numbers = (10, 100) if bench.quick else (100, 1000, 10000)
     folder = os.path.join(bench.build, "runs", "counted")
-    nothing = whole(bench, "validate", write(bench, "formulas-none", SLED % ("", "")), "--quiet")
+
+    def counts(name, text):
+        model = write(bench, name, text)
+        runs = [whole(bench, "run", model, "--end", repr(STEP * steps), "--step", repr(STEP), "--quiet", "--force", "--out", folder)
+                for steps in (2, 2 + STEPS)]
+        return whole(bench, "validate", model, "--quiet"), runs[0], (runs[1] - runs[0]) / STEPS
+
+    nothing = counts("formulas-none", SLED % ("", ""))
     rows, found = [], []
     for name, text in KINDS:
         for n in numbers:
-            model = write(bench, "formulas-%s-%d" % (text.__name__, n), text(n))
-            load = (whole(bench, "validate", model, "--quiet") - nothing) / n
-            first, last = (count(bench.program.path, model, ["--end", repr(STEP * steps), "--step", repr(STEP)], folder)[0]
-                           for steps in (2, 2 + STEPS))
-            step = (last - first) / STEPS / n
-            rows.append([name, n, "%.0f" % load, "%.1f" % step])
-            found.append({"kind": name, "number": n, "load": load, "step": step})
-    bench.print(table(["formulas", "number", "instructions of loading, each", "of a step, each"], rows))
+            load, run, step = ((own - without) / n for own, without in zip(counts("formulas-%s-%d" % (text.__name__, n), text(n)), nothing))
+            rest = run - load - 2 * step
+            rows.append([name, n, "%.0f" % load, "%.0f" % step, "%.0f" % rest])
+            found.append({"kind": name, "number": n, "load": load, "step": step, "rest": rest})
+    bench.print(table(GROWTH, rows))
     return {"rows": rows, "found": found}
 
 

@@ -2,6 +2,7 @@
 import os
 import re
 
+import formulas
 import studies
 from problems import PROBLEMS, ROOT
 
@@ -75,7 +76,7 @@ def of_instructions(found):
 
 
 def of_formulas(found):
-    return markdown(["formulas", "number", "instructions of loading, each", "of a step, each"], found["growth"]["rows"]) + "\n" + markdown(
+    return markdown(formulas.GROWTH, found["growth"]["rows"]) + "\n" + markdown(
         ["load", "formula: steps", "instructions a step", "plugin: steps", "instructions a step", "whole run"], found["beside"]["rows"])
 
 
