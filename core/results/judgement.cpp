@@ -24,8 +24,8 @@ constexpr double fewest_steps = 10.0;             // of a hard impact
 constexpr double fewest_steps_of_accuracy = 5.0;  // the error is controlled besides
 constexpr Limits of_radius{1e-2, 1e-1};           // penetration by the smaller radius
 constexpr double of_clearance = 1.0;              // penetration by the clearance
-constexpr Limits of_open_radius{1e-1, 0.5};       // the same by a radius where there is no clearance, as of cams and stops
-constexpr Limits of_size{1e-2, 1e-1};             // by the model's size, where no radius is known either
+constexpr Limits of_open_radius{1e-1, 0.5};       // by a radius without a clearance, as of discs
+constexpr Limits of_size{1e-2, 1e-1};             // by the size of the model without either
 constexpr double of_strength = 0.1;               // mean pressure by that at which a run ends
 constexpr double typical_density = 7800.0;        // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound

@@ -140,7 +140,6 @@ SOUND = [
     element("type: joint-stop, between: [ground, slider], lower: 0.05, upper: 0.2, stiffness: 1e6"),
     element("type: joint-stop, between: [ground, slider], lower: 0.14, upper: 0.2, stiffness: 1e6"),
     element("type: spring-damper, kind: rotational, between: [ground, coupler], stiffness: 1"),
-    element("type: spring-damper, between: [ground, crank/tip], damping: 1"),
     element("type: spring-damper, kind: rotational, between: [crank, slider], damping: 0.01"),
     (BOX, "damping: 100", "damping: 1e5"),
     (TORSION, "damping: 0.1", "damping: 10"),

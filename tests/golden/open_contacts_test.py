@@ -84,7 +84,7 @@ class OpenContacts(ProgramTest):
                 self.assertIn(of, reasons[0]["message"])
 
     def test_a_follower_that_sinks_into_its_cam_is_doubtful(self):
-        reasons = self.depth(CAM % "1e5")
+        reasons = self.depth(CAM % "1e6")
         self.assertEqual(["doubtful"], [r["level"] for r in reasons])
         self.assertIn("joint 'roll'", reasons[0]["message"])
 
