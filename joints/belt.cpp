@@ -77,7 +77,8 @@ class Belt final : public Joint {
   }
   const char* warning(const JointInput& in) const override {
     const double length = (position(*in.b) - position(*in.a)).norm();
-    return length > std::abs(across()) ? nullptr : "The pulleys are closer than their belt allows.";
+    if (!(length > std::abs(across()))) return "The pulleys are closer than their belt allows.";
+    return length > radius_[0] + radius_[1] ? nullptr : "The pulleys reach into each other.";
   }
   void observe(const JointInput& in, Span<const double>, Span<double> channels) const override {
     const Pair pair(*this, in, in.history);

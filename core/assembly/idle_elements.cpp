@@ -96,12 +96,18 @@ class Elements {
       const JointElement& joint = model_.joints[at(i)];
       if (joint.is_force || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
       if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
-      const bool pinned = !rate && joint.ideal_layout.pin != 0 && !line_of(joint) && same_place(joint, element);
-      if (!pinned || has_free_length(element)) continue;
+      if (!acts_along_line(element) || joint.ideal_layout.pin == 0 || line_of(joint)) continue;
+      const bool first = same_place(joint, element.marker_a), second = same_place(joint, element.marker_b);
+      if (first && second ? has_free_length(element) : !first && !second) continue;
       doubt("idle-force",
-            fmt::format("'{}' does nothing: joint '{}' holds its two ends at one place; name the frames between which "
-                        "it acts, or write 'kind: rotational' if it turns",
-                        element.name, joint.name),
+            first && second
+                ? fmt::format("'{}' does nothing: joint '{}' holds its two ends at one place; name the frames between "
+                              "which it acts, or write 'kind: rotational' if it turns",
+                              element.name, joint.name)
+                : fmt::format("'{}' moves nothing: joint '{}' holds its end '{}' in place, so that its length stays "
+                              "the same; name the frames between which it acts",
+                              element.name, joint.name,
+                              model_.markers[at(first ? element.marker_a : element.marker_b)].name),
             element);
       return true;
     }
@@ -113,10 +119,15 @@ class Elements {
            std::minmax(body_of(other.marker_a), body_of(other.marker_b));
   }
 
-  bool same_place(const JointElement& one, const JointElement& other) const {
-    const double* a = e_.markers[at(one.marker_a)].position;
-    const double* b = e_.markers[at(other.marker_a)].position;
+  bool same_place(const JointElement& joint, int marker) const {
+    const double* a = e_.markers[at(joint.marker_a)].position;
+    const double* b = e_.markers[at(marker)].position;
     return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) < one_place;
+  }
+
+  // A spring, and not a bushing, which turns as well.
+  static bool acts_along_line(const JointElement& element) {
+    return element.ideal_layout.coordinate == Coordinate::none && element.parameters->values.contains("free_length");
   }
 
   // Where it is long it pushes in no direction, which is said elsewhere.

@@ -244,11 +244,17 @@ class Examination {
     const JointElement& one = model_.joints[at(first)];
     const JointElement& other = model_.joints[at(second)];
     if (one.has_play != other.has_play) {
-      const bool bypassed = both == (one.has_play ? rank_b : rank_a);
-      return bypassed && bypass(one.has_play ? first : second,
-                                fmt::format("'{}', which holds the same two bodies without play",
-                                            (one.has_play ? other : one).name),
-                                "delete one of the two joints, or give both clearance");
+      const int loose = one.has_play ? first : second;
+      const std::string& ideal = (one.has_play ? other : one).name;
+      if (both == (one.has_play ? rank_b : rank_a)) {
+        return bypass(loose, fmt::format("'{}', which holds the same two bodies without play", ideal),
+                      "delete one of the two joints, or give both clearance");
+      }
+      // In space a thrust bearing beside a journal is sound.
+      return model_.space == Space::planar && both < rank_a + rank_b &&
+             bypass(loose,
+                    fmt::format("'{}', which holds the same two bodies without play in one of its directions", ideal),
+                    "delete one of the two joints");
     }
     if (one.has_play || (both > rank_a && both > rank_b)) return false;
     const JointElement& idle = both == rank_a ? other : one;

@@ -184,7 +184,8 @@ class BodyDoubts {
   bool judge_large_inertia(std::size_t i) const {
     const double own_reach = is_length(outlines_[i], gyration_[i], body(i).mass) ? outlines_[i].reach : 0.0;
     const double around = std::max(own_reach, scale());
-    if (!(around > 0.0) || gyration_[i] <= body_limit::gyration * around) return false;
+    if (!(around > 0.0)) return judge_lone_inertia(i);
+    if (gyration_[i] <= body_limit::gyration * around) return false;
     const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];
     if (body(i).mass > body_limit::sheet * disc && gyration_[i] <= body_limit::any_gyration * around) return false;
     const bool own = own_reach >= around;
@@ -192,6 +193,16 @@ class BodyDoubts {
          fmt::format("{}, but {} {:.4g} m: check the number{}", moment_words(i),
                      own ? "its frames reach" : "the lengths of the mechanism are about", around,
                      is_foreign(i) ? "" : " and write its unit, as in 'kg*mm^2'"));
+    return true;
+  }
+
+  /// Of rotors in a model without lengths: thinner than any foil.
+  bool judge_lone_inertia(std::size_t i) const {
+    const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];
+    if (gyration_[i] <= body_limit::lone_gyration || body(i).mass >= body_limit::foil * disc) return false;
+    warn(i, "inertia", "doubtful-inertia",
+         fmt::format("{}, and a disc of it would have {:.2g} kg/m^2: check mass and inertia{}", moment_words(i),
+                     body(i).mass / disc, is_foreign(i) ? "" : " and write their units, as in 'kg*mm^2'"));
     return true;
   }
 

@@ -11,6 +11,9 @@ namespace body_limit {
 /// have less mass than `sheet` [kg/m^2] on the disc with this radius of gyration; and of any. A homogenous body that
 /// reaches no farther than its frames has at most 1; a flywheel of steel has 500 kg/m^2, a bicycle wheel 2.
 inline constexpr double gyration = 10.0, sheet = 0.5, any_gyration = 300.0;
+/// Mass on the disc with the radius of gyration of a rotor, where nothing of the model has a length [kg/m^2], as foils
+/// of solar sails have 0.005; and that radius [m], as bodies that slide alone have any inertia.
+inline constexpr double foil = 1e-4, lone_gyration = 10.0;
 /// A body with a single frame is at least as long as its radius of gyration if its centre of mass is as far from that
 /// frame as this part of it: nearer, it is an unbalanced rotor, and the distance no length of the mechanism.
 inline constexpr double arm = 0.3;

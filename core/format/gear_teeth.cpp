@@ -13,6 +13,7 @@ namespace freeplay {
 namespace {
 
 constexpr double largest_pressure_angle = M_PI / 4.0;  // [rad]
+constexpr double farthest_axles = 100.0;               // by the radii of gyration of both wheels
 
 std::optional<double> pressure_angle_of(const CheckedValue& written) {
   const std::optional<double> angle = written.quantity(dimension::angle);
@@ -45,6 +46,21 @@ class TeethFault {
     if (!turns(first_) || !turns(second_)) return "";
     return words_of_wheels(*carrier);
   }
+  /// Wheels that do not reach each other; "" where they may.
+  std::string doubt() const {
+    double gyration = 0.0;
+    for (const int marker : {first_.marker_a, first_.marker_b, second_.marker_a, second_.marker_b}) {
+      const BodyId body = model_.markers[at(marker)].body;
+      if (body == ground || body == carrier_of(model_, gear_)) continue;
+      gyration += std::sqrt(model_.bodies[at(body)].inertia[8] / model_.bodies[at(body)].mass);
+    }
+    const double apart = distance();
+    if (!turns(first_) || !turns(second_) || apart <= farthest_axles * gyration || !(gyration > 0.0)) return "";
+    return fmt::format(
+        "the axles of '{}' and '{}' are {:.4g} m apart, but the radii of gyration of their wheels come to {:.3g} m: "
+        "check the places of the axles, their units and the inertias",
+        first_.name, second_.name, apart, gyration);
+  }
   /// What may be written instead.
   std::string remedy() const {
     const bool loose = first_.has_play || second_.has_play;
@@ -57,14 +73,21 @@ class TeethFault {
     return "needs " + what + ", but '" + joint.name + (joint.has_play ? "' has play" : "' leaves it free");
   }
   const JointElement& joint(int index) const { return model_.joints[at(index)]; }
+  bool is_on(BodyId body, int marker) const { return model_.markers[at(marker)].body == body; }
 
-  std::string words_of_wheels(BodyId carrier) const {
-    const auto is_first = [&](const JointElement& one) { return model_.markers[at(one.marker_a)].body == carrier; };
+  /// Of two axles on one body [m].
+  double distance() const {
+    const BodyId carrier = carrier_of(model_, gear_).value_or(ground);
     const auto axle = [&](const JointElement& one) -> const Vector3& {
-      return model_.markers[at(is_first(one) ? one.marker_a : one.marker_b)].position;
+      return model_.markers[at(is_on(carrier, one.marker_a) ? one.marker_a : one.marker_b)].position;
     };
     const Vector3 &a = axle(first_), &b = axle(second_);
-    if (std::hypot(b[0] - a[0], b[1] - a[1]) == 0.0) {
+    return std::hypot(b[0] - a[0], b[1] - a[1]);
+  }
+
+  std::string words_of_wheels(BodyId carrier) const {
+    const auto is_first = [&](const JointElement& one) { return is_on(carrier, one.marker_a); };
+    if (distance() == 0.0) {
       return "needs two axles at a distance, of which pitch radii follow; both are at the same point";
     }
     const double sense = is_first(first_) == is_first(second_) ? 1.0 : -1.0;
@@ -86,6 +109,7 @@ void give_teeth(Draft& draft, const CheckedValue& written, const Gear& gear) {
     written.fail("conflicting-keys", "'pressure_angle' " + words, {}, fault.remedy());
     return;
   }
+  if (const std::string words = fault.doubt(); !words.empty()) written.warn("doubtful-length", words);
   JointElement& element = draft.model.joints[at(gear.joint)];
   auto block = std::make_shared<ParameterBlock>();
   block->component = element.component;

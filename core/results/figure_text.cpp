@@ -13,6 +13,7 @@ namespace {
 constexpr double shown_noise = 0.005;  // of the value
 constexpr double shown_of_count = 0.5, shown_of_share = 5e-4;
 constexpr int most_digits = 4, fewest_digits = 3;
+constexpr int most_decimals = 9;  // beyond which a power of ten is shorter
 
 /// Power of ten of the first digit; 0 for 0.
 int magnitude(double value) {
@@ -34,6 +35,7 @@ std::string rounded(double value, int decimals) {
 /// One digit of the noise, two where the first is a 1 that rounding would change much.
 std::string with_noise(double value, double noise) {
   int decimals = -magnitude(noise);
+  if (decimals > most_decimals) return fmt::format("{:.0e} +- {:.0e}", value, noise);
   if (std::abs(std::stod(rounded(noise, decimals)) - noise) > 0.25 * noise) ++decimals;
   return fmt::format("{} +- {}", rounded(value, decimals), rounded(noise, decimals));
 }
@@ -72,7 +74,10 @@ std::string range_text(const Json& spread, const char* unit) {
   const int digits = part < 0.01 ? most_digits : fewest_digits;
   const bool count = *unit == '\0';
   const int decimals = count ? 0 : std::max(0, digits - 1 - magnitude(middle / to.factor));
-  const auto number = [&](double value) { return rounded(value / to.factor, decimals); };
+  const auto number = [&](double value) {
+    return decimals > most_decimals ? fmt::format("{:.{}g}", value / to.factor, digits)
+                                    : rounded(value / to.factor, decimals);
+  };
   return fmt::format("{} ({} to {} in {} runs)", with_unit(number(middle), to.unit), number(low), number(high), runs);
 }
 

@@ -24,6 +24,8 @@ constexpr double fewest_steps = 10.0;             // of a hard impact
 constexpr double fewest_steps_of_accuracy = 5.0;  // the error is controlled besides
 constexpr Limits of_radius{1e-2, 1e-1};           // penetration by the smaller radius
 constexpr double of_clearance = 1.0;              // penetration by the clearance
+constexpr Limits of_open_radius{1e-1, 0.5};       // by a radius without a clearance, as of discs
+constexpr Limits of_size{1e-2, 1e-1};             // by the size of the model without either
 constexpr double of_strength = 0.1;               // mean pressure by that at which a run ends
 constexpr double typical_density = 7800.0;        // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound
@@ -180,13 +182,19 @@ void judge_redundancy(const RunRecord& record, Verdict& verdict) {
                .limit = 0.0});
 }
 
+/// Penetration, with what `discard` leaves out [m].
+double deepest(const RunRecord& record, int j) {
+  const LargestValues& largest = record.statistics.largest();
+  return std::fmax(record.statistics.joint(j).max_penetration, largest.before()[largest.places().penetration(j)]);
+}
+
 void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
   const JointElement& joint = record.model.joints[at(j)];
   const JointLayout& layout = joint.layout;
   const JointStatistics seen = record.statistics.joint(j);
   const std::span<const double> discarded = record.statistics.largest().before();
   const PeakValues& values = record.statistics.largest().places();
-  const double depth = std::fmax(seen.max_penetration, discarded[values.penetration(j)]);
+  const double depth = deepest(record, j);
   const double force = std::fmax(seen.max_normal_force, discarded[values.normal_force(j)]);
   const double radius = layout.smaller_radius;
   // Of a rotor that turns about its centre of mass frames say no size.
@@ -233,10 +241,32 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
       verdict);
 }
 
+// Teeth, ends, cams and arcs, which no clearance measures: surfaces that have gone through each other.
+void judge_open_contact(const RunRecord& record, int j, Verdict& verdict) {
+  const JointElement& joint = record.model.joints[at(j)];
+  const double depth = deepest(record, j), radius = joint.layout.smaller_radius;
+  const bool known = radius > 0.0;
+  const double size = std::max(record.extremes.size, largest_gyration(record.model));
+  if (!known && !(size > 0.0)) return;
+  const double length = known ? radius : size;
+  judge(depth / length, known ? of_open_radius : of_size,
+        {.id = "penetration",
+         .level = {},
+         .message = fmt::format("{}: its surfaces are up to {:.2g} m deep in each other, {:.2g} times {}; check the "
+                                "stiffness of the contact and what presses",
+                                name(joint), depth, depth / length, known ? "the smaller radius" : "the model's size"),
+         .element = name(joint)},
+        verdict);
+}
+
 void judge_contacts(const RunRecord& record, Verdict& verdict) {
   for (int j = 0; j < static_cast<int>(record.model.joints.size()); ++j) {
-    const bool touches = has_contact_statistics(record.channels.joints[at(j)]);
-    if (touches && record.model.joints[at(j)].layout.clearance > 0.0) judge_contact(record, j, verdict);
+    if (!has_contact_statistics(record.channels.joints[at(j)])) continue;
+    if (record.model.joints[at(j)].layout.clearance > 0.0) {
+      judge_contact(record, j, verdict);
+    } else {
+      judge_open_contact(record, j, verdict);
+    }
   }
 }
 

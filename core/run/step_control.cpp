@@ -31,7 +31,10 @@ void StepControl::accept(double dt, double error) {
                              0.2, growth);
   first_ = broken_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
+  const double proposed = next_;
   next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});
+  // Between two corners that rounding alone keeps apart no step is too short.
+  if (dt < limits_.smallest) next_ = std::max(next_, std::min(proposed, limits_.largest));
   last_error_ = e;
   rejected_ = false;
   if (law_) laws_[*law_].first_step = next_;

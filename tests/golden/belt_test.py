@@ -58,6 +58,13 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
         self.assertAlmostEqual(150 / 0.12, columns["force.belt.right_tension"][-1], delta=1e-4)
         self.assertLess(max(map(abs, columns["energy.residual"])), 1e-3)
 
+    def test_pulleys_that_reach_into_each_other_are_said(self):
+        for radius, words in (("460 mm", "The pulleys reach into each other"), ("120 mm", None)):
+            self.write("m.yaml", "freeplay: 1" + (self.TEXT % (400, "open", "0 N*m", "1 rad*t", "10 ms", "step: 1 ms")).replace("120 mm", radius))
+            err = self.freeplay("run", "m.yaml", "--out", "r", "--force")[1]
+            self.assertEqual(words is not None, "warning" in err, err)
+            self.assertIn(words or "", err)
+
 
 if __name__ == "__main__":
     unittest.main()

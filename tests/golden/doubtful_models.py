@@ -92,6 +92,28 @@ forces:
 drivers: {motor: {joint: motor, kind: torque, value: 5}}
 simulation: {end: 0.1, step: 1e-3}
 """
+# A balance wheel, whose model has no lengths.
+WATCH = """freeplay: 1
+bodies: {balance: {mass: 60 mg, inertia: 1.2e-9}}
+joints: {staff: {type: revolute, between: [ground, balance]}}
+forces: {hair: {type: spring-damper, between: [ground, balance], kind: rotational, stiffness: 7.5e-7}}
+initial: {joints: {staff: 270 deg}}
+simulation: {end: 2 s, accuracy: 10 nm}
+"""
+# Two wheels whose teeth press on their bearings.
+TEETH = """freeplay: 1
+bodies:
+  ground: {frames: {w: [150 mm, 0]}}
+  pinion: {mass: 0.8, inertia: 4e-4}
+  wheel: {mass: 3, inertia: 8e-3}
+joints:
+  P: {type: revolute, between: [ground, pinion]}
+  W: {type: revolute, between: [ground/w, wheel]}
+  mesh: {type: gear, of: [P, W], ratio: -1/2, pressure_angle: 20 deg}
+drivers: {motor: {joint: P, kind: torque, value: 2}}
+forces: {load: {type: torque, on: wheel, value: "-0.05 N*m*s/rad*body.wheel.omega"}}
+simulation: {end: 2 s, accuracy: 1 um}
+"""
 # A wheel and a slide that it moves.
 RACK = """freeplay: 1
 bodies:

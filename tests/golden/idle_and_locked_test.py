@@ -86,6 +86,8 @@ MISTAKES = {
         (*element("type: joint-stop, kind: rotational, between: [ground, slider], lower: -1, upper: 1, stiffness: 100"), "idle-force", "rub", "turning"),
         (*element("type: spring-damper, kind: rotational, between: [ground, slider], stiffness: 100"), "idle-force", "rub", "turning"),
         (*element("type: spring-damper, between: [ground, crank], damping: 100"), "idle-force", "rub", "'main' holds its two ends at one place"),
+        (*element("type: spring-damper, between: [ground/wall, crank], stiffness: 100"), "idle-force", "rub",
+         "joint 'main' holds its end 'crank/origin' in place, so that its length stays the same"),
         (IDEAL, "forces:\n", "forces:\n  rub: {type: joint-friction, between: [ground/g, slider], friction: 2}\n", "idle-force", "rub", "moving along x",
          {"ground/wall: [0.3, 0]}": "ground/wall: [0.3, 0], ground/g: {angle: 90 deg}}"}),
         (ROD, "  held:", "  slide: {type: prismatic, between: [ground, sled]}\n  held:", "idle-force", "rub", "keeps 'sled' from turning",
@@ -114,6 +116,8 @@ MISTAKES = {
 # What looks like these but is meant: no warning at all.
 SOUND = [
     (IDEAL, "", ""),
+    (*element("type: bushing, between: [ground, crank], stiffness: {turn_z: 30}, damping: {turn_z: 0.1}"),),
+    (*element("type: spring-damper, between: [ground/wall, crank/tip], stiffness: 100, free_length: 0.25"),),
     (DISC, "", ""),
     (TORSION, "", ""),
     (CRANK, "ground/wall: [0.3, 0]}", "ground/wall: [0.3, 0], ground/g: {angle: 5 rad}}", {GUIDE: "between: [ground/g, slider]"}),
@@ -136,7 +140,6 @@ SOUND = [
     element("type: joint-stop, between: [ground, slider], lower: 0.05, upper: 0.2, stiffness: 1e6"),
     element("type: joint-stop, between: [ground, slider], lower: 0.14, upper: 0.2, stiffness: 1e6"),
     element("type: spring-damper, kind: rotational, between: [ground, coupler], stiffness: 1"),
-    element("type: spring-damper, between: [ground, crank/tip], damping: 1"),
     element("type: spring-damper, kind: rotational, between: [crank, slider], damping: 0.01"),
     (BOX, "damping: 100", "damping: 1e5"),
     (TORSION, "damping: 0.1", "damping: 10"),

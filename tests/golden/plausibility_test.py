@@ -6,7 +6,7 @@ import unittest
 
 from doubtful_models import (
     BELT, BOB, BOX, CART, COUPLED, CRANK, ECCENTRIC, FOOT, GUIDED, HAMMER, HANGER, HOURS, RACK, ROD, ROPE,
-    SATELLITE, SHAKER, TRAIN)
+    SATELLITE, SHAKER, TEETH, TRAIN, WATCH)
 from program import ROOT, ProgramTest
 
 DRIVEN = "kind: velocity, value: 100}}\ninitial: {joints: {main: 1}}"
@@ -155,6 +155,10 @@ MISTAKES = [
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "kind: velocity, value: 10", "kind: velocity, value: 600000 rpm", "doubtful-speed", "600000", "'one' would turn with 1.99e+03 m/s"),
     (BELT, "first_radius: 0.05", "first_radius: 50", LENGTH, "50", "50 mm"),
+    (WATCH, "1.2e-9", "1.2", INERTIA, "1.2", "a disc of it would have 4.8e-10 kg/m^2"),
+    (TEETH, "w: [150 mm, 0]", "w: [150, 0]", LENGTH, "20 deg", "150 m apart, but the radii of gyration of their wheels come to 0.074 m"),
+    (CRANK, "forces:\n", "  second: {type: distance, between: [coupler, slider], length: 0.12}\nforces:\n", "play-bypassed", "wrist",
+     "'second', which holds the same two bodies without play in one of its directions"),
     (BELT, "stiffness: 2e5", "stiffness: 0.2", VALUE, "belt", "by 1500 m"),
     (BELT, "damping: 100", "damping: 1e8", VALUE, "belt", "from swinging: it takes 5e+02 s"),
     (BELT, "pretension: 300", "pretension: 3e5 N", VALUE, "belt", "by 1.5 m"),
@@ -191,7 +195,7 @@ SOUND = [
     (CRANK, "", ""),
     (CART, "", ""),
     (ROD, "", ""),
-    *[(model, "", "") for model in (TRAIN, BELT, BOX, RACK, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
+    *[(model, "", "") for model in (TRAIN, BELT, WATCH, TEETH, BOX, RACK, SHAKER, COUPLED, ECCENTRIC, ROPE, HAMMER, BOB, SATELLITE, HOURS)],
     (SHAKER, "initial: {joints: {guide: 0}}\n", ""),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e8"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 1.4}"),

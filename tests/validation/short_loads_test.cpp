@@ -130,6 +130,17 @@ TEST(ShortLoads, CornersThatAreTouchedAreMet) {
       0.1);
 }
 
+// The same corner is found twice, an ulp apart.
+TEST(ShortLoads, CornersThatRoundingKeepsApartArePassed) {
+  const double a = 0.02896678534394961, b = 0.028972881082271626, top = 63000.38456021905, width = b - a;
+  const std::string squared = "6.095738322015371e-06^2";
+  const Load arch{fmt::format("{:.17g}*max(0, (t-{:.17g})*({:.17g}-t))/{}", top, a, b, squared),
+                  [=](double t) { return top * std::max(0.0, (t - a) * (b - t)) / (width * width); },
+                  {a, b}};
+  for (const char* integrator : {"", "verner6", "verner7", "arkode"})
+    EXPECT_LE(run(arch, 0.5, 1e-6, integrator).error, 2.0) << "with " << integrator;
+}
+
 TEST(ShortLoads, StepsBesideInfiniteSlopesAreShort) {
   const Load root{"100*sqrt(max(t-1,0))", [](double t) { return 100.0 * std::sqrt(std::max(t - 1.0, 0.0)); }, {1.0}};
   const Load fifth{"100*max(t-1,0)^0.2", [](double t) { return 100.0 * std::pow(std::max(t - 1.0, 0.0), 0.2); }, {1.0}};

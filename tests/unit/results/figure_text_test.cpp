@@ -25,6 +25,7 @@ TEST(FigureText, HasNoMoreDigitsThanTheNoiseLeaves) {
   EXPECT_EQ("51 +- 14 N", figure_text(51.13, "N", 14.0));
   EXPECT_EQ("700 +- 200 nm", figure_text(7.04e-7, "m", 2.1e-7, {.digits = 2}));
   EXPECT_EQ("200 +- 200 N", figure_text(230.0, "N", 170.0));
+  EXPECT_EQ("5e-20 +- 1e-20 N", figure_text(4.8e-20, "N", 1e-20));
 }
 
 TEST(FigureText, CountsAndPartsHaveTheirNoise) {

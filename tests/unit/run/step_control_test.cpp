@@ -22,6 +22,16 @@ TEST(StepControl, GrowsByFiveAtMostAndNotBeyondTheLargest) {
   EXPECT_EQ(control.next(), 30.0);
 }
 
+TEST(StepControl, AStepBetweenCornersThatRoundingKeepsApartDoesNotHoldBackTheNext) {
+  StepControl control({1.0, 1e-6, 10.0}, 5);
+  control.accept(1.0, 1e-3);
+  const double proposed = control.next();
+  control.accept(1e-12, 0.0);
+  EXPECT_EQ(control.next(), proposed);
+  control.accept(2e-6, 0.0);
+  EXPECT_LT(control.next(), 1e-3);
+}
+
 void expect_far_growth_once(StepControl& control, double dt) {
   control.accept(dt, 1e-12);
   EXPECT_GT(control.next(), 50.0 * dt);
