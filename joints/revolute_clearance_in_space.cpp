@@ -83,7 +83,8 @@ class PinInSpace final : public Joint {
   }
 
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
-    std::fill(internal.begin(), internal.end(), 0.0);
+    for (std::size_t k = 0; k < internal.size; ++k)
+      internal[k] = play_.start_of(k % static_cast<std::size_t>(play_.memory()));
     const RelativeMotion<double> motion = motion_of(in);
     for (std::size_t i = 0; i < contacts_kept; ++i) play::start(in.t, gap(motion, i), history.part(i * slots, slots));
   }
@@ -311,8 +312,7 @@ class PinInSpace final : public Joint {
   }
   void forget(std::size_t place, Span<const double> internal, Span<double> history) const {
     if (!is_end(place)) return;
-    const Span<const double> own = part_of(internal, place);
-    std::copy(own.begin(), own.end(), forgotten(history, place).begin());
+    play_.forget(part_of(internal, place), forgotten(history, place));
   }
 
   /// The force of friction at an end by the law alone,

@@ -35,14 +35,17 @@ struct SpatialLaws {
     if (law_variables > most_law_variables)
       throw BadParameter("clearance.friction", "out-of-range",
                          "this law has more internal variables than the joint keeps");
-    if (!MemoryRules<most_law_variables>(friction).is_deflection())
-      throw BadParameter("clearance.friction", "out-of-range",
-                         "in space the memory of friction is a vector along the surface: a law whose memory does not "
-                         "begin at zero, or outlives a contact, is for joints of the plane");
+    rules = MemoryRules<most_law_variables>(friction);
     slides = sized && !is_inert(friction);
   }
-  static double start_of(std::size_t) { return 0.0; }
-  static bool forgets(std::size_t) { return true; }
+  /// Of the memory() numbers of a contact.
+  double start_of(std::size_t k) const { return k % 3 == 0 ? rules.start[k / 3] : 0.0; }
+  bool forgets(std::size_t k) const { return rules.forgets(k / 3); }
+  /// The contact of these numbers ends: what it forgets is at its start again, `zero` from there on.
+  void forget(Span<const double> own, Span<double> zero) const {
+    for (std::size_t k = 0; k < own.size; ++k)
+      if (forgets(k)) zero[k] = own[k] - start_of(k);
+  }
   /// Of one contact: where its laws have kinks. Without sliding the law of friction is not asked.
   std::int32_t count_kinks() const { return slides ? play::count_kinks(normal, friction) : normal.switches(); }
   void write_kinks(const Approach& gap, double slip, const JointInput& in, Span<double> g) const {
@@ -64,7 +67,8 @@ struct SpatialLaws {
     return (space::chained(f.tangential, f.d_normal, normal, f.d_slip, speed) / speed) * slip;
   }
 
-  /// Internal variables of one contact: a vector in the axes of marker a for each of the law's.
+  /// Internal variables of one contact: a vector in the axes of marker a for each of the law's; of one that is no
+  /// deflection the first number alone.
   int memory() const { return 3 * law_variables; }
 
   /// The same for a law with internal variables, whose memory is a vector z across the normal n for each: z along the
@@ -76,7 +80,8 @@ struct SpatialLaws {
   ///
   /// with the law's F and z'. For bristles this is z' = v - sigma_0 |v| z/g in the plane of the contact, alike in all
   /// directions; the last term carries z along as n turns. In planar motion it is the law itself, which must be odd in
-  /// slip and memory. `z` and `z_rate` hold memory() numbers.
+  /// slip and memory. A variable that is no deflection, as a way slid, has no direction: s goes into all three, and
+  /// s' = s'(v, z.u, s) must be even in both. `z` and `z_rate` hold memory() numbers.
   template <class T>
   Vec<T> friction_force(const T& normal, const Vec<T>& slip, const Vec<T>& n, const Vec<T>& n_rate, Span<const T> z,
                         Span<T> z_rate) const;
@@ -84,6 +89,7 @@ struct SpatialLaws {
   ContactLawRef normal;
   FrictionLawRef friction;
   int law_variables;
+  MemoryRules<most_law_variables> rules{};
   bool slides;  ///< is there friction?
 
  private:
@@ -177,6 +183,10 @@ Vec<T> SpatialLaws::friction_force(const T& normal, const Vec<T>& slip, const Ve
   T along[most_law_variables], beside[most_law_variables], none[most_law_variables];
   T along_rate[most_law_variables], beside_rate[most_law_variables], none_rate[most_law_variables];
   for (std::size_t i = 0; i < count; ++i) {
+    if (!rules.is_deflection(i)) {
+      along[i] = beside[i] = none[i] = z[3 * i];
+      continue;
+    }
     along[i] = dot(variable(i), u);
     beside[i] = dot(variable(i), p);
     none[i] = T(0.0);
@@ -184,6 +194,10 @@ Vec<T> SpatialLaws::friction_force(const T& normal, const Vec<T>& slip, const Ve
   const T force = evaluate(normal, speed, along, along_rate);
   const T sideways = evaluate(normal, speed, beside, beside_rate) - evaluate(normal, speed, none, none_rate);
   for (std::size_t i = 0; i < count; ++i) {
+    if (!rules.is_deflection(i)) {
+      z_rate[3 * i] = along_rate[i], z_rate[3 * i + 1] = z_rate[3 * i + 2] = T(0.0);
+      continue;
+    }
     const Vec<T> rate = along_rate[i] * u + (beside_rate[i] - none_rate[i]) * p - dot(n_rate, variable(i)) * n;
     z_rate[3 * i] = rate.x, z_rate[3 * i + 1] = rate.y, z_rate[3 * i + 2] = rate.z;
   }

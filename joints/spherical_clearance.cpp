@@ -60,7 +60,7 @@ class SphericalClearance final : public Joint {
   }
 
   void initialize(const JointInput& in, Span<double> internal, Span<double> history) const override {
-    std::fill(internal.begin(), internal.end(), 0.0);
+    for (std::size_t k = 0; k < internal.size; ++k) internal[k] = play_.start_of(k);
     play::start(in.t, approach(in), history);
   }
   void begin_step(const JointInput& in, const MarkerAccelerations& acc, double dt,
@@ -230,8 +230,8 @@ class SphericalClearance final : public Joint {
                             });
   }
   Memory memory(const JointInput& in) const { return {in.internal, in.history.part(slots, in.internal.size)}; }
-  static void forget(Span<const double> internal, Span<double> history) {
-    std::copy(internal.begin(), internal.end(), history.begin() + slots);
+  void forget(Span<const double> internal, Span<double> history) const {
+    play_.forget(internal, history.part(slots, internal.size));
   }
   template <class T>
   Forces<T> forces(const Gap<T>& gap, const T& normal, const Vec<T>& friction) const {

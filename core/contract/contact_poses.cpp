@@ -178,7 +178,7 @@ MarkerPair ContactPose::at(double depth) const {
 double ContactPose::lever() const { return Three(&by_twist[3]).norm() / normal_of(*this).norm(); }
 
 double ContactPose::push(const std::vector<double>& wrench) const {
-  return wrench.size() < 12 ? 0.0 : -Three(&wrench[6]).dot(normal_of(*this)) / normal_of(*this).norm();
+  return wrench.size() < 12 ? 0.0 : -Three(&wrench[6]).dot(normal_of(*this)) / normal_of(*this).squaredNorm();
 }
 
 Twelve ContactPose::closing(Twelve twist, double rate) const {

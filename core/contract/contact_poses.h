@@ -28,7 +28,7 @@ struct ContactPose {
   MarkerPair at(double depth) const;
   /// How much a turn of b by 1 rad brings, by what a shift of 1 m along the normal does [m].
   double lever() const;
-  /// The part of a wrench on b that pushes it out of the contact [N].
+  /// What pushes b out of the contact in a wrench on b, as does work on the event function [N].
   double push(const std::vector<double>& wrench) const;
   /// A twist of b with which the contact closes at `rate` [m/s], made from any one.
   Twelve closing(Twelve twist, double rate) const;

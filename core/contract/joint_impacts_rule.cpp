@@ -60,20 +60,17 @@ class ImpactCheck {
     judge(fixed, 0.0, approach);
     if (!located.sound || !fixed.sound) return;
     judge_steps(located);
-    if (located.ends == 1 && fixed.ends == 1) {
-      const double off = std::abs(located.end_energy - fixed.end_energy);
-      expect("impact-modes", off <= 0.03 * located.energy, thrown(approach), [&] {
-        return fmt::format(
-            "an impact keeps {:.4g} of the energy where steps end at events and {:.4g} in steps of one size",
-            located.end_energy / located.energy, fixed.end_energy / fixed.energy);
-      });
-    }
+    if (located.ends == 1 && fixed.ends == 1) judge_modes(located, fixed);
     // Once more, slower, with what the first impact has left.
     JointMoment again = thrown(0.3 * approach);
     again.z = located.last.z;
     again.h = located.last.h;
     again.t = located.last.t;
-    if (located.ends == 1) judge(impact(again, per_contact), per_contact, 0.3 * approach);
+    if (located.ends == 1) {
+      Impact second = impact(again, per_contact);
+      second.others += located.others;  // which may still be on
+      judge(second, per_contact, 0.3 * approach);
+    }
     JointMoment inside = probe_.start(with_twists(pose_.at(0.3 * depth_), pose_.closing(any_, 0.5 * approach)), 1.0);
     judge(impact(inside, per_contact), per_contact, 0.0);
   }
@@ -198,6 +195,22 @@ class ImpactCheck {
                return fmt::format("its end reports the largest force {:.6g} N where {:.6g} N were the most", force,
                                   i.largest_push);
              });
+  }
+
+  /// Where friction at a light body is stiff both ways err by their steps: what the shorter ones leave counts.
+  void judge_modes(Impact located, Impact fixed) {
+    const auto off = [&] { return std::abs(located.end_energy - fixed.end_energy); };
+    const auto agree = [&] { return off() <= 0.03 * located.energy; };
+    for (const int parts : {finer, finer * finer}) {
+      if (agree()) break;
+      located = follow(thrown(approach), per_contact, parts);
+      fixed = follow(thrown(approach), 0.0, parts);
+    }
+    expect("impact-modes", agree(), thrown(approach), [&] {
+      return fmt::format(
+          "an impact keeps {:.4g} of the energy where steps end at events and {:.4g} in steps of one size",
+          located.end_energy / located.energy, fixed.end_energy / fixed.energy);
+    });
   }
 
   // An impact that asks for too few steps is not resolved; one that asks for far too many does not come to its end. How

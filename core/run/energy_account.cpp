@@ -10,6 +10,7 @@ namespace {
 constexpr double same_length = 1e-6;      // of steps, relative
 constexpr double bends_little = 1e-6;     // third differences of powers, relative: the cubic errs by a fortieth of that
 constexpr double nearly_straight = 3e-3;  // what is left of a smooth power is then a small part of that
+constexpr double noticed_work = 1e-8;  // what powers off a straight line may make, of the energy at the start and moved
 }  // namespace
 
 double power(const double* wrench, const MarkerKinematics& k) {
@@ -198,6 +199,29 @@ void EnergyAccount::fill_inside(double s, const Evaluation& e, std::span<const d
   for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
     integral_inside_[i] =
         integral_at(s, dt_, {integral_before_[i], integral_[i]}, power_before_[i], integral_inside_[i], power_[i]);
+  }
+  fill(e, channels, row, integral_inside_, row_work_inside(s, e, lambda));
+}
+
+bool EnergyAccount::bends(double s, const Evaluation& e, std::span<const double> lambda) {
+  if (system_.forces().blocks().empty()) return false;
+  flow(e, lambda, integral_inside_);
+  double off = 0.0;
+  for (std::size_t i = power_.size() - system_.forces().blocks().size(); i < power_.size(); ++i) {
+    off += std::abs(integral_inside_[i] - power_before_[i] - s * (power_[i] - power_before_[i]));
+  }
+  return off * dt_ > noticed_work * (std::abs(initial_) + exchanged_);
+}
+
+void EnergyAccount::fill_bent(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+                              std::span<double> row) {
+  flow(e, lambda, integral_inside_);
+  const bool from_start = s <= 0.5;
+  const double length = from_start ? s * dt_ : (s - 1.0) * dt_;
+  for (std::size_t i = 0; i < integral_inside_.size(); ++i) {
+    const double end = from_start ? power_before_[i] : power_[i];
+    integral_inside_[i] = (from_start ? integral_before_[i] : integral_[i]) +
+                          length / 6.0 * (end + 4.0 * power_end_[i] + integral_inside_[i]);
   }
   fill(e, channels, row, integral_inside_, row_work_inside(s, e, lambda));
 }

@@ -70,6 +70,13 @@ class EnergyAccount final : public Flows {
   /// over the step.
   void fill_inside(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
                    std::span<double> row);
+  /// Whether powers of joints at the fraction s of the last step are so far from a straight line that the work there
+  /// wants more than a parabola: see_half_way() half way from s to the nearer end, then fill_bent().
+  bool bends(double s, const Evaluation& e, std::span<const double> lambda);
+  void see_half_way(const Evaluation& e, std::span<const double> lambda) { flow(e, lambda, power_end_); }
+  /// As fill_inside(), by Simpson's rule from the nearer end.
+  void fill_bent(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
+                 std::span<double> row);
   /// Of what gives energy at one end or at the other of a step: the sum of the larger powers [W]. Drivers that
   /// prescribe motion count at the start alone.
   double largest_power(const Evaluation& start, std::span<const double> lambda_start, const Evaluation& end,

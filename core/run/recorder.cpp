@@ -302,10 +302,15 @@ bool Recorder::see_ahead(double t, std::span<double> row) {
 // The row at t inside of the step that is being accepted. False when the run is over.
 bool Recorder::see_at(double t, std::span<double> row) {
   if (!see_ahead(t, row)) return false;
-  const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
+  const double dt = run_.trial.t() - run_.accepted.t(), s = (t - run_.accepted.t()) / dt;
   if (run_.flows > 0 && run_.inner.known()) {
     const std::span<const double> integrals = std::span<const double>(run_.between.z()).last(at(run_.flows));
     run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), integrals, run_.channels, row);
+  } else if (run_.energy.bends(s, run_.e_between, run_.between.lambda())) {
+    if (!inside_.look_inside(run_.accepted.t() + (s <= 0.5 ? 0.5 * s : 0.5 + 0.5 * s) * dt)) return false;
+    run_.energy.see_half_way(run_.e_between, run_.between.lambda());
+    if (!inside_.look_inside(t)) return false;
+    run_.energy.fill_bent(s, run_.e_between, run_.between.lambda(), run_.channels, row);
   } else {
     run_.energy.fill_inside(s, run_.e_between, run_.between.lambda(), run_.channels, row);
   }

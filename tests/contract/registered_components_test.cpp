@@ -1,4 +1,7 @@
 // Every registered component keeps the contract of its kind.
+#include <algorithm>
+#include <string_view>
+
 #include <gtest/gtest.h>
 
 #include "allocation_counter.h"
@@ -24,6 +27,30 @@ TEST_P(ComponentContract, Holds) {
     EXPECT_FALSE(rule_meaning(GetParam()->kind, finding.rule).empty()) << finding.rule << " is not explained";
   }
 }
+
+struct Seeded {
+  const char* name;
+  std::uint64_t seed;
+};
+void PrintTo(const Seeded& s, std::ostream* out) { *out << s.name << " with the seed " << s.seed; }
+class ComponentContractOfSeed : public testing::TestWithParam<Seeded> {};
+
+// States in which slopes drown in the force, a touch has few steps, or friction is stiff against a light body.
+TEST_P(ComponentContractOfSeed, Holds) {
+  const auto& all = registry().components();
+  const auto found = std::ranges::find_if(all, [](const RegisteredComponent& entry) {
+    return entry.component->kind == ComponentKind::joint &&
+           std::string_view(entry.component->description.name) == GetParam().name;
+  });
+  ASSERT_NE(found, all.end());
+  const Findings findings =
+      check_component(*found->component, registry(), {.seed = GetParam().seed, .allocations = &allocations});
+  for (const Finding& finding : findings.all()) EXPECT_TRUE(finding.held) << finding.rule << ": " << finding.detail;
+}
+
+INSTANTIATE_TEST_SUITE_P(Long, ComponentContractOfSeed,
+                         testing::Values(Seeded{"prismatic-clearance", 3}, Seeded{"point-on-line-clearance", 4},
+                                         Seeded{"point-on-line-clearance", 8}));
 
 std::vector<const Component*> of_kind(ComponentKind kind) {
   std::vector<const Component*> found;

@@ -1,10 +1,11 @@
 """The energy ledger closes for every contact law, friction law and integrator that the program lists."""
 import csv
 import json
+import os
 import subprocess
 import unittest
 
-from program import PROGRAM, ProgramTest
+from program import PROGRAM, ROOT, ProgramTest
 
 MODEL = """freeplay: 1
 name: journal
@@ -87,6 +88,15 @@ class Ledger(ProgramTest):
             for law in laws:
                 with self.subTest(integrator=name, friction=law):
                     self.check("flores, restitution: 0.8", law, steps, part)
+
+    def test_rows_inside_an_impact_close_as_the_ends_of_its_steps_do(self):
+        """The block of Flores, Leine and Glocker through its first impact: 1e-8 of the energy at the start."""
+        self.freeplay("run", os.path.join(ROOT, "mechanisms", "benchmark", "translational.yaml"), "--set", "mu=0",
+                      "--accuracy", "100 nm", "--end", "3 ms", "--interval", "1 us", "--quiet", "--out", "r")
+        rows = list(csv.DictReader(self.read("r", "results.csv").splitlines()))
+        start = float(rows[0]["energy.kinetic"]) + float(rows[0]["energy.potential"])
+        self.assertGreater(float(rows[-1]["energy.dissipated"]), 3e-3 * start)
+        self.assertLess(max(abs(float(row["energy.residual"])) for row in rows), 4e-9 * start)
 
 
 if __name__ == "__main__":

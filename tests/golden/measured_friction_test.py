@@ -33,6 +33,20 @@ WAYS, OVER_WAY = (0.0, 5e-3, 20e-3), (0.3, 0.1, 0.05)
 OVER_WAY_LAW = ("{law: friction-over-distance, coefficient: [[0 mm, 0.3], [5 mm, 0.1], [20 mm, 0.05]], slid: %s, "
                 "vs: 0.2 mm/s}")
 
+# A shaft at rest on the lower side of its sleeve, which goes along and turns.
+SHAFT = """plugins: [friction.so]
+space: spatial
+gravity: [0, -9.81, 0]
+bodies: {shaft: {mass: 2, inertia: [1, 1, 1e-3], velocity: {linear: [0, 0, 0.15 m/s], angular: [0, 0, 20]}}}
+joints:
+  G:
+    type: cylindrical
+    between: [ground, shaft]
+    clearance: {journal_radius: 10 mm, radial_clearance: 0.05 mm, length: 100 mm, initial: loaded,
+                contact: {law: hertz, K: 1e9}, friction: %s}
+simulation: {end: 20 ms, accuracy: 10 nm, output: {interval: 20 us}}
+"""
+
 SPRING = """plugins: [spring.so]
 bodies: {disc: {mass: 1 kg, inertia: 0.05}}
 joints:
@@ -101,6 +115,28 @@ class FrictionByTable(Outside):
                                               columns["body.block.x"]):
                 mu = between(WAYS, OVER_WAY, start + x - first)
                 self.assertAlmostEqual(-mu * normal * slip / math.hypot(slip, 2e-4), force, delta=1e-4 * normal)
+
+    def test_a_block_in_space_slides_as_one_in_the_plane(self):
+        plane = self.run_block(OVER_WAY_LAW % "2 mm", "40 ms")
+        text = BLOCK % (OVER_WAY_LAW % "2 mm", "40 ms")
+        for old, new in (("gravity: [0, -9.81]", "space: spatial\ngravity: [0, -9.81, 0]"),
+                         ("inertia: 0.01", "inertia: [0.01, 0.01, 0.01]"),
+                         ("width: 0.2 mm, length", "width: 0.2 mm, height: 0.2 mm, gap_height: 0.05 mm, length")):
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        space = self.run_model(text, "--allow-plugins")
+        for x, y in zip(plane["body.block.x"], space["body.block.x"], strict=True):
+            self.assertAlmostEqual(x, y, delta=2e-8)
+
+    def test_a_shaft_slides_over_the_whole_of_its_way(self):
+        """Along and around at once: the way is that of the speed of the surface."""
+        columns = self.run_model(SHAFT % (OVER_WAY_LAW % "2 mm"), "--allow-plugins")
+        time, slip, way = columns["time"], [abs(v) for v in columns["joint.G.vt"]], 2e-3
+        for i in range(1, len(time)):
+            way += 0.5 * (slip[i] + slip[i - 1]) * (time[i] - time[i - 1])
+            expected = between(WAYS, OVER_WAY, way) * slip[i] / math.hypot(slip[i], 2e-4)
+            self.assertAlmostEqual(expected, abs(columns["joint.G.ft"][i] / columns["joint.G.fn"][i]), delta=2e-3)
+        self.assertGreater(way, 5e-3)
 
     def test_its_memory_is_part_of_a_checkpoint(self):
         # Short steps, so that a run of a second is met in the middle.

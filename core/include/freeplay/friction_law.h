@@ -40,8 +40,8 @@ class FrictionLaw {
   virtual std::int32_t switches() const { return 0; }
   virtual void decide(const FrictionState& /*state*/, Span<double> /*values*/) const {}
   /// Laws with memory: the values that the internal variables start with, zero as they come, and when they go back to
-  /// them, `each_contact` as they come; internal_variables() entries each. Joints in space, where memory is a vector
-  /// along the surface, take no other values.
+  /// them, `each_contact` as they come; internal_variables() entries each. In space such a variable is a vector along
+  /// the surface, one with other values a number without direction.
   virtual void memory(Span<double> /*start*/, Span<MemoryReset> /*resets*/) const {}
   /// Laws with memory: the energy that it stores and gives back [J], and in `slopes`, internal_variables() entries, its
   /// partial derivatives. Then what is lost at an instant is minus the power of the force and the rate of that. Zero,

@@ -37,12 +37,8 @@ struct MemoryRules {
     law.memory({start, size}, {resets, size});
   }
   bool forgets(std::size_t k) const { return resets[k] == MemoryReset::each_contact; }
-  /// Whether memory is what a deflection is: zero at first, and forgotten.
-  bool is_deflection() const {
-    for (std::size_t k = 0; k < size; ++k)
-      if (start[k] != 0.0 || !forgets(k)) return false;
-    return true;
-  }
+  /// Whether a variable is what a deflection is: zero at first, and forgotten.
+  bool is_deflection(std::size_t k) const { return start[k] == 0.0 && forgets(k); }
   double start[most]{};
   MemoryReset resets[most]{};
   std::size_t size = 0;

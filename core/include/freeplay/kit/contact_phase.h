@@ -55,9 +55,14 @@ inline ContactForce unpredicted(const ContactLawRef& law, const Approach& gap) {
   const double v0 = std::max(gap.rate, smallest_approach_speed);
   ContactForce f = law.evaluate({gap.penetration, gap.rate, v0});
   if (gap.rate <= smallest_approach_speed) return f;
-  const double step = std::min(1e-6 * gap.rate, gap.rate - smallest_approach_speed);
-  const auto at = [&](double v) { return law.evaluate({gap.penetration, v, v}).normal; };
-  f.d_rate = (at(gap.rate + step) - at(gap.rate - step)) / (2.0 * step);
+  // Of the fourth order, so that steps may be long: a force that is large beside its slope leaves little rounding in
+  // it.
+  const double step = std::min(1e-3 * gap.rate, 0.5 * (gap.rate - smallest_approach_speed));
+  const auto difference = [&](double by) {
+    const auto at = [&](double v) { return law.evaluate({gap.penetration, v, v}).normal; };
+    return (at(gap.rate + by) - at(gap.rate - by)) / (2.0 * by);
+  };
+  f.d_rate = (4.0 * difference(step) - difference(2.0 * step)) / 3.0;
   return f;
 }
 

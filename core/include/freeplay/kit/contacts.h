@@ -57,6 +57,9 @@ class Contacts : public Joint {
 
   static constexpr std::size_t count = Geometry::contacts, contact_channels = 3;
   static constexpr double share = share_of<Geometry>();
+  static_assert(
+      requires(const Geometry& g) { double{g.play}; },
+      "a geometry has a number `play`: how far the bodies move freely [m]");
   static constexpr bool keeps = requires { Geometry::kept; };
   static constexpr bool has_levers = requires(const Geometry& g) { g.levers(); };
 
