@@ -25,7 +25,7 @@ class MotionNames final : public ChannelNames {
     return "it may hold t, parameters and channels such as body.NAME.vx, joint.NAME.speed and frame.BODY/FRAME.x";
   }
   /// Accelerations and forces, which would make an algebraic loop, and other columns of results.
-  std::optional<Refusal> refusal(std::string_view name) const override;
+  std::optional<Refusal> refusal(std::string_view written) const override;
 
   const std::vector<std::pair<std::string, std::string>>& found() const override { return found_; }
   bool excused() const override { return excused_; }
