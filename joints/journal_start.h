@@ -103,6 +103,10 @@ inline void write_journal_start(const SpatialPlay& play, const Bearing& bearing,
   tilt = Eigen::Map<const Eigen::Vector3d>(start.tilt.data());
   tilt_rate = Eigen::Map<const Eigen::Vector3d>(start.tilt_rate.data());
   if (out.rotation == nullptr) return;
+  if (has_shoulders && std::abs(along.dot(position)) > bearing.axial_clearance + 1e-9 * play.radii.clearance)
+    throw std::runtime_error(
+        "a shoulder of the journal would start in the bearing: the part of the eccentricity along the axis must stay "
+        "within 'axial_clearance'");
   tilt -= along.dot(tilt) * along;
   tilt_rate -= along.dot(tilt_rate) * along;
   if (start.tilts())

@@ -179,10 +179,21 @@ class DerivativeCheck {
     }
     return std::min(0.02, std::max(0.2 * beyond, 1e-6 * play));
   }
-  /// What forces change by on the way from the world's origin: the rounding of places counts by it.
+  /// Sizes of what outputs are differences of. A moment is one of products of forces and arms, also where it is zero as
+  /// the force goes through the origin.
+  std::vector<double> products() const {
+    const MarkerPair& m = moment_.markers;
+    const double arm =
+        (vector3(m.b.position) - vector3(m.a.position)).norm() + std::max(probe_.layout().clearance, 0.0);
+    std::vector<double> result(12 + nz_);
+    for (std::size_t r = 0; r < 12; ++r)
+      if (group(r) == 1) result[r] = given_size_[0] * arm;
+    return result;
+  }
+  /// The same with what forces change by on the way from the world's origin: the rounding of places counts by it.
   std::vector<double> rounded_places() const {
     const double far = vector3(moment_.markers.a.position).norm() + vector3(moment_.markers.b.position).norm();
-    std::vector<double> result(12 + nz_);
+    std::vector<double> result = products();
     for (std::size_t r = 0; r < result.size(); ++r) {
       for (const std::size_t i : moving_components(probe_.space())) {
         if (i % 6 < 3) result[r] = std::max(result[r], far * std::abs(given_[r * (24 + nz_) + i]));
@@ -199,7 +210,7 @@ class DerivativeCheck {
           move(x, there);
           return outputs(probe_.forces(there));
         },
-        largest, Side::both, c < 12 ? rounded_places() : std::vector<double>());
+        largest, Side::both, c < 12 ? rounded_places() : products());
     const std::size_t width = 24 + nz_;
     double size[3] = {0.0, 0.0, 0.0};
     for (std::size_t r = 0; r < d.value.size(); ++r) size[group(r)] = std::max(size[group(r)], std::abs(d.value[r]));

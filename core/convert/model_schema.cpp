@@ -128,6 +128,11 @@ Json array_of(Json items, std::uint32_t least, std::uint32_t most) {
   return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}, {"maxItems", most}};
 }
 
+void add_file(Json& alternatives, const char* keys) {
+  alternatives.push_back({{"type", "string"}, {"pattern", "\\.csv$"}});
+  alternatives.push_back(reference(definition_name(keys)));
+}
+
 Json leaf_schema(const Parameter& p) {
   const std::vector<std::string> words = words_of(p);
   Json alternatives = Json::array();
@@ -148,9 +153,11 @@ Json leaf_schema(const Parameter& p) {
       break;
     case ParameterKind::list:
       alternatives.push_back(array_of(reference("quantity"), p.least, p.most));
+      add_file(alternatives, "column");
       break;
     case ParameterKind::table:
       alternatives.push_back(array_of(array_of(reference("quantity"), 2, 2), p.least, p.most));
+      add_file(alternatives, "column points");
       break;
     case ParameterKind::choice:
       break;

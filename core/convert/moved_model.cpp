@@ -52,11 +52,12 @@ class Move {
     return copy_entries(root, [&](const std::string& key, const Node& value) -> Node& {
       if (key == "plugins") return copy_plugins(value);
       if (key == "drivers" || key == "presets") return copy_drivers(value);
+      if (key == "joints" || key == "forces" || key == "simulation") return copy_parameters(value);
       if (key == "analysis") return copy_path_of(value);
       if (key == "templates") {
         return copy_entries(value, [&](const std::string&, const Node& content) -> Node& {
           return copy_entries(content, [&](const std::string& section, const Node& entries) -> Node& {
-            return section == "drivers" ? copy_drivers(entries) : copy(entries);
+            return section == "drivers" ? copy_drivers(entries) : copy_parameters(entries);
           });
         });
       }
@@ -69,8 +70,16 @@ class Move {
     return copy_entries(section, [&](const std::string&, const Node& driver) -> Node& {
       return copy_entries(driver, [&](const std::string& key, const Node& table) -> Node& {
         if (key == "inverse_kinematics") return copy_path_of(table);
-        return key == "table" ? copy_table(table) : copy(table);
+        return key == "table" ? copy_table(table) : copy_parameters(table);
       });
+    });
+  }
+
+  /// Of types, whose parameters may be `pull.csv` or `{file: pull.csv}`.
+  Node& copy_parameters(const Node& value) {
+    if (value.is_scalar()) return value.text.ends_with(".csv") ? moved(value) : copy(value);
+    return copy_entries(value, [&](const std::string& key, const Node& inner) -> Node& {
+      return key == "file" && inner.is_scalar() ? moved(inner) : copy_parameters(inner);
     });
   }
 

@@ -175,11 +175,19 @@ class DriverEntry {
     entry_.fail_at_key("duplicate-name", "there is a driver '" + name + "' already");
   }
 
+  /// What to drive in place of a joint without a coordinate.
+  std::string remedy_of(int joint) const {
+    for (const Gear& gear : draft_.model.gears)
+      if (gear.joint == joint)
+        return "drive '" + element(gear.first).name + "' or '" + element(gear.second).name + "', which it ties";
+    return coordinate_hint(*element(joint).ideal_component);
+  }
+
   /// Has the joint a coordinate of its own? Reports at `clearance_place` or `place` when not.
   bool may_be_driven(int joint, const CheckedValue& place, const CheckedValue& clearance_place) const {
     if (element(joint).ideal_layout.coordinate == Coordinate::none) {
       place.fail("wrong-type", "joint '" + element(joint).name + "' has no coordinate that could be driven", {},
-                 coordinate_hint(*element(joint).ideal_component));
+                 remedy_of(joint));
       return false;
     }
     if (!element(joint).has_play || element(joint).layout.coordinate != Coordinate::none) return true;

@@ -63,7 +63,7 @@ class GearEntry {
   /// Only between turns the ratio is a plain number, as the teeth need it.
   CheckedParameters read_play(const Component& loose, const Gear& gear, bool paired) {
     const bool turn = paired && dimension_of(gear.first) == dimension_of(gear.second);
-    if (turn) return check_parameters(loose, map_, draft_.registry);
+    if (turn) return check_parameters(loose, map_, draft_);
     const auto block = map_.find(loose.description.block);
     if (paired && block) {
       block->fail_at_key("wrong-type", "teeth with play join two wheels that turn, no slide", {},

@@ -90,8 +90,8 @@ class Chain {
     const Component* ideal = word == nullptr ? nullptr : draft_.registry.find(ComponentKind::joint, word);
     if (ideal == nullptr) fail_type(fmt::format("its part '{}' needs a type '{}' with play", part.name, part.type));
     turn(part, loose->description.axis, element);
-    const CheckedParameters own{block_of(*loose), parameters_.places};
-    const CheckedParameters closed{block_of(*ideal), parameters_.places};
+    const CheckedParameters own{block_of(*loose), parameters_.places, parameters_.fields};
+    const CheckedParameters closed{block_of(*ideal), parameters_.places, parameters_.fields};
     if (!make_joint(draft_, closed, entry_, element.ideal, element.ideal_layout)) return false;
     if (!make_joint(draft_, own, entry_, element.joint, element.layout)) return false;
     element.parameters = std::make_shared<const ParameterBlock>(*own.block);

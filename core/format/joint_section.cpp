@@ -194,7 +194,7 @@ class JointEntry {
     const MotionNames names(draft_, part_, channels);
     MotionParameters motion(names);
     const CheckedParameters ideal_parameters =
-        check_parameters(*ideal_, map_, draft_.registry, element().is_force ? &motion : nullptr);
+        check_parameters(*ideal_, map_, draft_, element().is_force ? &motion : nullptr);
     if (ideal_parameters.block) motion.give(*ideal_parameters.block, channels, element());
     const bool twins = ideal_ != component_;
     const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal, element().ideal_layout);
@@ -207,8 +207,7 @@ class JointEntry {
     }
     JointLayout layout = element().ideal_layout;
     joint = ideal;
-    const CheckedParameters parameters =
-        twins ? check_parameters(*component_, map_, draft_.registry) : ideal_parameters;
+    const CheckedParameters parameters = twins ? check_parameters(*component_, map_, draft_) : ideal_parameters;
     if (twins) make_joint(draft_, parameters, entry_, joint, layout);
     if (parameters.block) {
       doubt_parameters(*parameters.block, parameters.places, draft_.length_scale,
@@ -229,7 +228,7 @@ class JointEntry {
   }
 
   void create_chain(const ParameterBlock& ideal) {
-    const CheckedParameters parameters = check_parameters(*component_, map_, draft_.registry);
+    const CheckedParameters parameters = check_parameters(*component_, map_, draft_);
     JointRef judge;
     JointLayout nothing;
     if (!make_joint(draft_, parameters, entry_, judge, nothing)) return;

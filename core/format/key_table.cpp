@@ -106,6 +106,18 @@ constexpr FormatKey driver[] = {
      "{frame: platform, path: {x: 0.1*t}, joints: [A]}"},
     use};
 
+constexpr FormatKey column[] = {
+    {"file", "text", "", "required", "CSV file beside the model; the name alone is short for it.", "angles.csv"},
+    {"value", "text", "", "first", "Column of the numbers.", "angle"},
+    {"unit", "text", "", "SI", "Of the column.", "deg"}};
+
+constexpr FormatKey column_points[] = {
+    {"file", "text", "", "required", "CSV file beside the model; the name alone is short for it.", "pull.csv"},
+    {"x", "text", "", "first", "Column of the variable, which must increase.", "stretch"},
+    {"value", "text", "", "second", "Column of the values.", "pull"},
+    {"x_unit", "text", "", "SI", "Of the column of the variable.", "mm"},
+    {"unit", "text", "", "SI", "Of the column of the values.", "kN"}};
+
 constexpr FormatKey points[] = {
     {"points", "list of list of quantity", "", "required", "Pairs of the variable and the value, the first increasing.",
      "[[-10 mm, -900 N], [0 m, 0 N], [10 mm, 600 N]]"},
@@ -382,6 +394,8 @@ constexpr FormatMap maps[] = {
     {"inverse_kinematics", "drivers.NAME.inverse_kinematics", "A path that a frame follows.", inverse_kinematics},
     {"path", "drivers.NAME.inverse_kinematics.path", "Functions of time, or a file of poses.", path},
     {"table", "drivers.NAME.table", "Values over time.", table},
+    {"column", "joints.NAME.KEY", "A parameter that is a list, from a file.", column},
+    {"column points", "joints.NAME.KEY", "A parameter that is a table of points, from a file.", column_points},
     {"points", "forces.NAME.spring", "A formula of a type, such as of a spring, as points of its first variable.",
      points},
     {"arcs", "joints.NAME.curve", "A curve in the plane of arcs of circles and their common tangents.", arcs},

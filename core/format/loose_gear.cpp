@@ -46,7 +46,7 @@ class LooseGear {
     set("clearance.first_radius", -ratio * block.values["clearance.pitch_radius"].number);
     set("clearance.middle", std::numeric_limits<double>::quiet_NaN());
     if (!meets(block, parameters, ratio)) return;
-    CheckedParameters made{std::move(block), parameters.places};
+    CheckedParameters made{std::move(block), parameters.places, parameters.fields};
     JointRef joint;
     JointLayout layout;
     JointElement& element = draft_.model.joints[at(gear_.joint)];

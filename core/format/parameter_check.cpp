@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "format/arc_keys.h"
+#include "format/draft.h"
 #include "format/parameter_tree.h"
 #include "format/point_parameters.h"
 #include "format/table_variables.h"
@@ -32,8 +33,8 @@ ComponentKind law_kind(ParameterKind kind) {
 /// The check of one component's block.
 class ParameterCheck {
  public:
-  ParameterCheck(const Component& component, const Registry& registry, MotionParameters* motion)
-      : component_(component), registry_(registry), motion_(motion) {
+  ParameterCheck(const Component& component, Draft& draft, MotionParameters* motion)
+      : component_(component), draft_(draft), registry_(draft.registry), motion_(motion) {
     block_.component = &component;
   }
 
@@ -52,9 +53,8 @@ class ParameterCheck {
       }
       waiting = std::move(later);
     }
-    CheckedParameters checked{std::nullopt, std::move(places_)};
-    if (good_) checked.block = std::move(block_);
-    return checked;
+    if (good_) checked_.block = std::move(block_);
+    return std::move(checked_);
   }
 
  private:
@@ -76,7 +76,7 @@ class ParameterCheck {
         bind_absent(child, map.owner());
         continue;
       }
-      places_.emplace(path, *value);
+      checked_.places.emplace(path, *value);
       bind(child, *value, map, path);
     }
   }
@@ -188,10 +188,10 @@ class ParameterCheck {
       case ParameterKind::friction_law:
         return read_law_block(parameter, written, value);
       case ParameterKind::list:
-        return (value.points = read_list(parameter, unit, written, places_)) != nullptr;
+        return (value.points = read_list(draft_, parameter, unit, written, checked_)) != nullptr;
       case ParameterKind::table: {
         const Dimension of_x = unit_in_table(variables_of(parameter).front().unit).dimension;
-        return (value.points = read_table(parameter, of_x, unit, written, places_)) != nullptr;
+        return (value.points = read_table(draft_, parameter, of_x, unit, written, checked_)) != nullptr;
       }
     }
     return false;
@@ -355,26 +355,28 @@ class ParameterCheck {
   }
 
   bool read_law(const Component& law, MapReader& map, const std::string& path, ParameterValue& value) {
-    CheckedParameters checked = check_parameters(law, map, registry_);
-    for (const auto& [inner, place] : checked.places) places_.emplace(path + "." + inner, place);
+    CheckedParameters checked = check_parameters(law, map, draft_);
+    for (const auto& [inner, place] : checked.places) checked_.places.emplace(path + "." + inner, place);
+    for (const auto& [inner, place] : checked.fields) checked_.fields.emplace(path + "." + inner, place);
     if (checked.block) value.law = std::make_shared<const ParameterBlock>(std::move(*checked.block));
     return value.law != nullptr;
   }
 
   const Component& component_;
+  Draft& draft_;
   const Registry& registry_;
   MotionParameters* motion_;
   ParameterBlock block_;
   std::vector<Binding> bindings_;
-  std::map<std::string, CheckedValue> places_;
+  CheckedParameters checked_;
   bool good_ = true;
 };
 
 }  // namespace
 
-CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry,
+CheckedParameters check_parameters(const Component& component, MapReader& entry, Draft& draft,
                                    MotionParameters* motion) {
-  return ParameterCheck(component, registry, motion).run(entry);
+  return ParameterCheck(component, draft, motion).run(entry);
 }
 
 const Component* find_type(const Registry& registry, ComponentKind kind, const CheckedValue& value,
@@ -406,6 +408,10 @@ void report_fault(const CreationFault& fault, const CheckedParameters& parameter
   if (!fault.bad_parameter) {
     throw Error(Error::Category::plugin, "plugin-failed", "in '" + entry.path() + "': " + fault.text,
                 entry.key_location());
+  }
+  if (const auto field = parameters.fields.find(fault.path); field != parameters.fields.end()) {
+    const auto& [location, length] = field->second;
+    return entry.reading().diagnostics->error(location, length, fault.id, fault.text);
   }
   // The nearest place that is written: the value itself, or the block in which it is missing.
   std::string path = fault.path;

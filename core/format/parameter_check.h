@@ -13,15 +13,25 @@
 
 namespace freeplay {
 
+struct Draft;
+
+/// A number in a file with a table.
+struct FieldPlace {
+  Location location;
+  int length;  ///< in characters
+};
+
 /// What the file says about a component.
 struct CheckedParameters {
   std::optional<ParameterBlock> block;         ///< nothing when something in it was in error
   std::map<std::string, CheckedValue> places;  ///< values and blocks that are written, by their path in the table
+  std::map<std::string, FieldPlace> fields;    ///< the same for numbers that a file beside the model has
 };
 
 /// Reads the keys of `entry` that the table of `component` names and makes them known to it; the caller finishes the
-/// entry. Maps within it are finished here. With `motion` some may depend on the motion.
-CheckedParameters check_parameters(const Component& component, MapReader& entry, const Registry& registry,
+/// entry. Maps within it are finished here. Files that they name become inputs of the model. With `motion` some may
+/// depend on the motion.
+CheckedParameters check_parameters(const Component& component, MapReader& entry, Draft& draft,
                                    MotionParameters* motion = nullptr);
 
 /// The type `word` of this kind, or null after `unknown-type` at `value`, which may suggest one of `others` too.

@@ -320,7 +320,7 @@ class SimulationSection {
     const auto type = by_name ? std::optional<CheckedValue>(value) : map.require("type");
     const Component* component = type ? find_type(draft_.registry, ComponentKind::integrator, *type) : nullptr;
     if (component == nullptr) return nullptr;
-    create(check_parameters(*component, map, draft_.registry), value);
+    create(check_parameters(*component, map, draft_), value);
     map.finish();
     return component;
   }
@@ -341,7 +341,7 @@ class SimulationSection {
     const Node nothing;
     const CheckedValue owner(*draft_.top, nothing, nullptr, "simulation.integrator");
     MapReader map = MapReader::absent(owner);
-    create(check_parameters(component, map, draft_.registry), owner);
+    create(check_parameters(component, map, draft_), owner);
   }
 
   void create(CheckedParameters checked, const CheckedValue& place) {

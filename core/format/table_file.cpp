@@ -38,7 +38,7 @@ std::string TableFile::path_of(const Draft& draft, const std::string& name) {
   return (std::filesystem::path(draft.model.file).parent_path() / name).lexically_normal().string();
 }
 
-bool TableFile::open() {
+bool TableFile::open(std::size_t least) {
   text_ = find();
   if (text_ == nullptr) return false;
   if (text_->too_large()) {
@@ -46,7 +46,7 @@ bool TableFile::open() {
                fmt::format("a table has at most {} columns and {} rows", CsvText::most_columns, CsvText::most_rows));
     return false;
   }
-  return has_header();
+  return has_header(least);
 }
 
 const CsvText* TableFile::find() const {
@@ -77,7 +77,7 @@ const CsvText* TableFile::find() const {
 }
 
 /// Is the first row one of names, each of which stands for one column?
-bool TableFile::has_header() const {
+bool TableFile::has_header(std::size_t least) const {
   const CsvText& text = *text_;
   if (const auto foreign = text.foreign_byte()) {
     const bool zero = foreign->text.starts_with('\0');
@@ -87,7 +87,7 @@ bool TableFile::has_header() const {
     return false;
   }
   const std::vector<std::string>& names = text.names();
-  if (names.size() < 2) {
+  if (names.size() < least) {
     bad(text.header(0), "a table needs two columns and a header row", "fields are separated by commas");
     return false;
   }
@@ -125,7 +125,7 @@ std::optional<std::size_t> TableFile::column(const std::optional<CheckedValue>& 
 
 // Goes on after a mistake, so that all are reported, up to a number that is no longer mended by hand.
 bool TableFile::read(const Column& times, const std::vector<Column>& others, std::vector<double>& t,
-                     std::vector<std::vector<double>>& values) const {
+                     std::vector<std::vector<double>>& values, Rising rising) const {
   const std::size_t columns = text_->names().size();
   values.resize(others.size());
   std::optional<double> last;
@@ -149,8 +149,11 @@ bool TableFile::read(const Column& times, const std::vector<Column>& others, std
       if (time) values[i].push_back(x.value_or(0.0));
     }
     if (!time) continue;
-    if (last && !(*time > *last)) {
-      bad(text_->field(row, times.index), fmt::format("times must increase: {} s follows {} s", *time, *last));
+    if (rising != Rising::none && last && !(*time > *last)) {
+      bad(text_->field(row, times.index),
+          rising == Rising::times
+              ? fmt::format("times must increase: {} s follows {} s", *time, *last)
+              : fmt::format("the first numbers of points must increase: {} follows {}", *time, *last));
       ++mistakes;
     }
     last = time;

@@ -22,14 +22,17 @@ class TableFile {
   /// `file` holds the path, from the folder of the model; it must outlive this.
   TableFile(Draft& draft, const CheckedValue& file) : draft_(draft), file_(file) {}
 
-  /// False after an error, also where the first row does not name columns of one name each.
-  bool open();
+  /// What the first column of numbers does from row to row.
+  enum class Rising { times, numbers, none };
+
+  /// False after an error, also where the first row does not name columns of one name each, `least` or more.
+  bool open(std::size_t least = 2);
   const CsvText& text() const { return *text_; }
   /// By its name or, without one, the one at the place `standard`.
   std::optional<std::size_t> column(const std::optional<CheckedValue>& name, std::size_t standard) const;
-  /// The numbers of `times` [s], which must increase, and of the others. False after an error.
+  /// The numbers of `times`, which must increase unless `rising` says else, and of the others. False after an error.
   bool read(const Column& times, const std::vector<Column>& others, std::vector<double>& t,
-            std::vector<std::vector<double>>& values) const;
+            std::vector<std::vector<double>>& values, Rising rising = Rising::times) const;
   /// Reports "bad-table" at a field.
   void bad(const CsvText::Field& field, const std::string& message, const std::string& hint = {}) const;
 
@@ -38,7 +41,7 @@ class TableFile {
 
  private:
   const CsvText* find() const;
-  bool has_header() const;
+  bool has_header(std::size_t least) const;
   std::optional<double> number(std::size_t row, const Column& column) const;
 
   Draft& draft_;

@@ -1,4 +1,7 @@
 // Parameters that are lists of numbers or tables of points.
+#include <filesystem>
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "component/instances.h"
@@ -104,6 +107,81 @@ TEST(PointParameters, ThatAreOptionalMayBeAbsent) {
   ASSERT_TRUE(built.model) << built.report;
   EXPECT_EQ(law_of(built).values.find("loads")->second.points, nullptr);
 }
+
+/// Keys of the law with its numbers in a file, and where that is.
+struct FromFile {
+  FromFile(const char* name, const std::string& text)
+      : path((std::filesystem::path(::testing::TempDir()) / (std::string(name) + ".csv")).string()) {
+    std::ofstream(path) << text;
+  }
+  std::string path;
+};
+
+TEST(PointParameters, AreColumnsOfAFile) {
+  const FromFile file("measured", "# by hand\nspeed, depth, load\n30, 0, 1\n1, 10, 5\n20, 20, 7\n");
+  const Built built = build_pin("        speeds: {file: " + file.path +
+                                ", value: speed, unit: mm/s}\n        loads: {file: " + file.path +
+                                ", x: depth, value: load, x_unit: mm, unit: kN/200}\n");
+  ASSERT_TRUE(built.model) << built.report;
+  const ParameterPoints &speeds = *law_of(built).values.find("speeds")->second.points,
+                        &loads = *law_of(built).values.find("loads")->second.points;
+  EXPECT_EQ(speeds.y, (std::vector<double>{0.03, 1e-3, 2e-2}));
+  EXPECT_TRUE(speeds.x.empty());
+  EXPECT_EQ(loads.x, (std::vector<double>{0.0, 0.01, 0.02}));
+  EXPECT_EQ(loads.y, (std::vector<double>{5.0, 25.0, 35.0}));
+  EXPECT_EQ(built.model->inputs.size(), 1u);  // kept with a result
+}
+
+TEST(PointParameters, AreTheFirstColumnsOfAFileThatIsNamedAlone) {
+  const FromFile list("alone", "speed\n0.01\n0.02\n"), table("pair", "depth, load\n0, 1\n1, 2\n");
+  const Built built = build_pin("        speeds: " + list.path + "\n        loads: " + table.path + "\n");
+  ASSERT_TRUE(built.model) << built.report;
+  EXPECT_EQ(law_of(built).values.find("speeds")->second.points->y, (std::vector<double>{0.01, 0.02}));
+  EXPECT_EQ(law_of(built).values.find("loads")->second.points->x, (std::vector<double>{0.0, 1.0}));
+}
+
+struct FileMistake {
+  const char *name, *text, *keys, *place, *words;
+};
+void PrintTo(const FileMistake& m, std::ostream* out) { *out << m.name; }
+class FileMistakes : public ::testing::TestWithParam<FileMistake> {};
+
+// `FILE` in the keys is its path.
+TEST_P(FileMistakes, AreReportedAtTheirPlace) {
+  const FromFile file("mistake", GetParam().text);
+  std::string keys = GetParam().keys;
+  for (std::size_t at = keys.find("FILE"); at != std::string::npos; at = keys.find("FILE"))
+    keys.replace(at, 4, file.path);
+  const Built built = build_pin(keys);
+  EXPECT_FALSE(built.model);
+  EXPECT_TRUE(built.places.starts_with(GetParam().place)) << built.places << built.report;
+  EXPECT_NE(built.report.find(GetParam().words), std::string::npos) << built.report;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, FileMistakes,
+    ::testing::Values(
+        FileMistake{"no file", "", "        speeds: none.csv\n", "13:17 file-not-found ", "none.csv"},
+        FileMistake{"too few rows", "speed\n0.01\n", "        speeds: {file: FILE}\n", "13:24 wrong-length ",
+                    "must have 2 to 4 numbers, not 1"},
+        FileMistake{"no number", "speed\n0.01\nfast\n", "        speeds: {file: FILE}\n", "3:1 bad-table ",
+                    "'fast' is not a number"},
+        FileMistake{"bounds", "speed\n10\n101\n", "        speeds: {file: FILE, unit: mm/s}\n", "3:1 out-of-range ",
+                    "must be > 0 and <= 0.1 m/s, not 0.101 m/s"},
+        FileMistake{"fault of a constructor", "n, speed\n1, 0.01\n2, 0.095\n",
+                    "        speeds: {file: FILE, value: speed}\n", "3:4 out-of-range ", "too fast"},
+        FileMistake{"unknown column", "n, speed\n1, 0.01\n2, 0.02\n", "        speeds: {file: FILE, value: sped}\n",
+                    "13:", "did you mean 'speed'?"},
+        FileMistake{"unit", "speed\n1\n2\n", "        speeds: {file: FILE, unit: mm}\n", "13:", "must be a unit of"},
+        FileMistake{"one column", "load\n1\n2\n", "        speeds: [0.01, 0.02]\n        loads: {file: FILE}\n",
+                    "1:1 bad-table ", "a table needs two columns"},
+        FileMistake{"x that falls", "depth, load\n0, 1\n2, 2\n2, 3\n",
+                    "        speeds: [0.01, 0.02]\n        loads: {file: FILE}\n", "4:1 bad-table ",
+                    "the first numbers of points must increase: 2 follows 2"},
+        FileMistake{"x of a list", "speed\n0.01\n0.02\n", "        speeds: {file: FILE, x: speed}\n",
+                    "13:", "unknown key 'x'"},
+        FileMistake{"point that a constructor refuses", "depth, load\n0, 1\n1, 13\n",
+                    "        speeds: [0.01, 0.02]\n        loads: {file: FILE}\n", "3:4 out-of-range ", "thirteen"}));
 
 struct PointMistake {
   const char *name, *keys, *place, *words;
