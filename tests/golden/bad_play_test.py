@@ -85,7 +85,7 @@ DOUBTED = (
     ("revolute", PLANE, PIN, "{eccentricity: [0.2 mm, 0]}", "0.0001 m deep in its wall"),
     ("revolute", SPACE, LONG_PIN, "{eccentricity: [0.2 mm, 0, 0]}", "0.0001 m deep in its wall"),
     ("cylindrical", SPACE, LONG_PIN, "{eccentricity: [0.2 mm, 0, 0]}", "0.0001 m deep in its wall"),
-    ("universal", SPACE, CROSS + LONG_PIN, "{eccentricity: [0.2 mm, 0, 0]}", "0.0001 m deep in its wall"),
+    ("universal", SPACE, CROSS + LONG_PIN, "{eccentricity: [0, 0, 0.2 mm]}", "0.0001 m deep in its wall"),
     ("spherical", SPACE, PIN, "{eccentricity: [0.2 mm, 0, 0]}", "0.0001 m deep in its wall"),
 )
 

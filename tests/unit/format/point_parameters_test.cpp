@@ -118,17 +118,17 @@ struct FromFile {
 };
 
 TEST(PointParameters, AreColumnsOfAFile) {
-  const FromFile file("measured", "# by hand\nspeed, depth, load\n30, 0, 1\n1, 10, 5\n20, 20, 7\n");
+  const FromFile file("measured", "# by hand\nspeed, depth, load\n30, 0, 0.001\n1, 10, 0.005\n20, 20, 0.007\n");
   const Built built = build_pin("        speeds: {file: " + file.path +
                                 ", value: speed, unit: mm/s}\n        loads: {file: " + file.path +
-                                ", x: depth, value: load, x_unit: mm, unit: kN/200}\n");
+                                ", x: depth, value: load, x_unit: mm, unit: kN}\n");
   ASSERT_TRUE(built.model) << built.report;
   const ParameterPoints &speeds = *law_of(built).values.find("speeds")->second.points,
                         &loads = *law_of(built).values.find("loads")->second.points;
   EXPECT_EQ(speeds.y, (std::vector<double>{0.03, 1e-3, 2e-2}));
   EXPECT_TRUE(speeds.x.empty());
   EXPECT_EQ(loads.x, (std::vector<double>{0.0, 0.01, 0.02}));
-  EXPECT_EQ(loads.y, (std::vector<double>{5.0, 25.0, 35.0}));
+  EXPECT_EQ(loads.y, (std::vector<double>{1.0, 5.0, 7.0}));
   EXPECT_EQ(built.model->inputs.size(), 1u);  // kept with a result
 }
 
@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
         FileMistake{"no number", "speed\n0.01\nfast\n", "        speeds: {file: FILE}\n", "3:1 bad-table ",
                     "'fast' is not a number"},
         FileMistake{"bounds", "speed\n10\n101\n", "        speeds: {file: FILE, unit: mm/s}\n", "3:1 out-of-range ",
-                    "must be > 0 and <= 0.1 m/s, not 0.101 m/s"},
+                    "must be > 0 m/s and <= 0.1 m/s, not 0.101 m/s"},
         FileMistake{"fault of a constructor", "n, speed\n1, 0.01\n2, 0.095\n",
                     "        speeds: {file: FILE, value: speed}\n", "3:4 out-of-range ", "too fast"},
         FileMistake{"unknown column", "n, speed\n1, 0.01\n2, 0.02\n", "        speeds: {file: FILE, value: sped}\n",
