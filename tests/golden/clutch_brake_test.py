@@ -127,6 +127,19 @@ simulation: {end: 0.3 s, output: {interval: 10 ms}, %s}
             self.assert_column(columns, "joint.pin.speed", lambda t: -3 + 2 * t + t * t, 1e-9)
             self.assert_column(columns, "force.a.slipping", lambda t: 1.0)
 
+    def test_a_limit_that_rises_from_nothing_is_taken_up_by_every_integrator(self):
+        # The wheel of 0.5 kg m^2 loses what the limit takes: 12 N m smooth(t, 0.1 s, 0.2 s), 0.6 N m s up to 0.2 s.
+        for integrator in ("bathe", "newmark", "hht", "generalized-alpha", "dopri5"):
+            with self.subTest(integrator=integrator):
+                run = self.run_model("""freeplay: 1
+bodies: {wheel: {mass: 1, inertia: 0.5}}
+joints: {axle: {type: revolute, between: [ground, wheel]}}
+forces: {brake: {type: brake, between: [ground, wheel], limit: "12 N*m*smooth(t, 0.1 s, 0.2 s)"}}
+initial: {speeds: {axle: 10 rad/s}}
+simulation: {end: 0.2 s, integrator: %s, accuracy: 1e-6, output: {interval: 10 ms}}
+""" % integrator)
+                self.assertLess(abs(run["body.wheel.omega"][-1] - (10 - 0.6 / 0.5)), 1e-4)
+
     def test_what_no_coupling_can_be_is_refused_where_it_stands(self):
         text = SPACES["plane"][0] + "forces:\n  a: {type: %s, between: [ground, wheel], %s}\n"
         for name, keys, id in (("brake", "limit: 3, stiffness: 0", "out-of-range"), ("brake", "stiffness: 5", "missing-key"),
