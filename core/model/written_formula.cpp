@@ -3,8 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include <fmt/format.h>
-
+#include "base/format_into.h"
 #include "base/state_formula.h"
 
 namespace freeplay {
@@ -46,9 +45,8 @@ void set_formula(ParameterValue& value, const Expression& expression, Location b
 
 Status tell_failure(const Location& begin, bool places_inside, const EvaluationFailure& failure, Message& message) {
   const int column = begin.column + (places_inside ? failure.offset : 0);
-  const auto end = fmt::format_to_n(message.text, sizeof message.text - 1, "{}:{}:{}: {}", begin.file, begin.line,
-                                    column, failure.reason);
-  *end.out = '\0';
+  char* const end = message.text + sizeof message.text - 1;
+  *format_into(message.text, end, "{}:{}:{}: {}", begin.file, begin.line, column, failure.reason) = '\0';
   abi::copy_text(message.id, sizeof message.id, failure.id);
   return Status::bad_parameter;
 }

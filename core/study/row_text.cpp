@@ -18,7 +18,7 @@ void append_plain(std::string& out, std::string_view text) {
   for (const char c : text) out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
 }
 
-void append_index(std::string& out, std::uint64_t index) { fmt::format_to(std::back_inserter(out), "{}\t", index); }
+void append_index(std::string& out, std::uint64_t index) { out += fmt::format("{}\t", index); }
 
 }  // namespace
 
@@ -28,7 +28,7 @@ std::uint32_t row_checksum(std::string_view text) {
 }
 
 void seal_line(std::string& out, std::size_t from) {
-  fmt::format_to(std::back_inserter(out), "{:08x}\n", row_checksum(std::string_view(out).substr(from)));
+  out += fmt::format("{:08x}\n", row_checksum(std::string_view(out).substr(from)));
 }
 
 std::string_view unsealed(std::string_view line) {
@@ -77,7 +77,7 @@ void append_point(std::string& out, std::uint64_t index, const std::string& hash
     from = out.size();
   }
   append_index(out, index);
-  fmt::format_to(std::back_inserter(out), "{}\t{}\t", hash, outcome.exit_code);
+  out += fmt::format("{}\t{}\t", hash, outcome.exit_code);
   append_plain(out, outcome.error);
   for (const double seconds : {outcome.wall, outcome.cpu, outcome.run}) {
     out += '\t';

@@ -100,17 +100,16 @@ void TableWriter::put(const SortedRow& row, const std::string& host) {
   cells_.clear();
   plan_.cells(row.index, cells_);
   std::string& line = files_->table.line();
-  fmt::format_to(std::back_inserter(line), "{},", row.index);
+  line += fmt::format("{},", row.index);
   if (plan_.start_cell) cells_[*plan_.start_cell] = row.start;
   for (const std::string& cell : cells_) append_cell(line, cell);
   std::string_view rest = row.values;
   for (std::size_t i = 0; i < plan_.layout.columns.size(); ++i) append_cell(line, cut_field(rest, '\t'));
-  fmt::format_to(std::back_inserter(line), "{},", row.exit_code);
+  line += fmt::format("{},", row.exit_code);
   append_cell(line, row.error);
   line.pop_back();
   files_->table.end_line();
-  fmt::format_to(std::back_inserter(files_->timing.line()), "{},{},{},{},{}", row.index, host, row.wall, row.cpu,
-                 row.run);
+  files_->timing.line() += fmt::format("{},{},{},{},{}", row.index, host, row.wall, row.cpu, row.run);
   files_->timing.end_line();
   if (!row.good()) {
     const Json failure{
@@ -146,8 +145,7 @@ void TableWriter::put_samples(const SortedRow& row) {
     for (std::int64_t k = 0; !rest.empty(); ++k, ++count) {
       std::string_view value = cut_field(rest, '\t');
       const std::string_view time = cut_field(value, ':');
-      fmt::format_to(std::back_inserter(files_->samples.line()), "{},{},{},{},{}", row.index, plan_.layout.samples[i],
-                     k, time, value);
+      files_->samples.line() += fmt::format("{},{},{},{},{}", row.index, plan_.layout.samples[i], k, time, value);
       files_->samples.end_line();
       files_->columns.put_word(files_->reducer, plan_.layout.samples[i]);
       files_->columns.put(files_->time, number_in(time));

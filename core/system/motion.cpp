@@ -4,9 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
 #include "base/error.h"
+#include "base/format_into.h"
 #include "system/path_place.h"
 
 namespace freeplay {
@@ -96,14 +95,10 @@ bool Motions::reaches(int driver, double t, const CrankPose& pose, MotionFault& 
   fault.kinematics = model_.drivers[static_cast<std::size_t>(driver)].kinematics;
   fault.id = "ik-unreachable";
   char* const end = fault.text + sizeof fault.text - 1;
-  const auto room = [&](const char* to) { return static_cast<std::size_t>(end - to); };
-  char* to =
-      fmt::format_to_n(fault.text, room(fault.text), "leg of '{}' cannot reach the path at t = {:.9g} s", leg.name, t)
-          .out;
+  char* to = format_into(fault.text, end, "leg of '{}' cannot reach the path at t = {:.9g} s", leg.name, t);
   to = write_place_on_path(model_, fault.kinematics, t, to, end);
-  to = fmt::format_to_n(to, room(to), ": its pins are {:.6g} m apart, the leg reaches from {:.6g} m to {:.6g} m",
-                        pose.distance, std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler)
-           .out;
+  to = format_into(to, end, ": its pins are {:.6g} m apart, the leg reaches from {:.6g} m to {:.6g} m", pose.distance,
+                   std::abs(leg.crank - leg.coupler), leg.crank + leg.coupler);
   *to = '\0';
   return false;
 }

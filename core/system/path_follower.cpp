@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include <fmt/format.h>
-
 #include "base/error.h"
+#include "base/format_into.h"
 #include "base/index.h"
 #include "system/path_place.h"
+#include "system/spatial_kinematics.h"
 
 namespace freeplay {
 namespace {
@@ -196,10 +196,8 @@ void PathFollower::fail(double t, MotionFault& fault) const noexcept {
   fault.id = "ik-unreachable";
   const bool several = fault.kinematics != paths_.back().kinematics;
   char* const end = fault.text + sizeof fault.text - 1;
-  char* to =
-      fmt::format_to_n(fault.text, sizeof fault.text - 1, "the mechanism cannot follow the path at t = {:.9g} s{}", t,
-                       several ? " (of this entry or another)" : "")
-          .out;
+  char* to = format_into(fault.text, end, "the mechanism cannot follow the path at t = {:.9g} s{}", t,
+                         several ? " (of this entry or another)" : "");
   to = write_place_on_path(model_, fault.kinematics, t, to, end);
   *to = '\0';
 }

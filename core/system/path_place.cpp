@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
+#include "base/format_into.h"
 #include "base/index.h"
 #include "model/path_pose.h"
 
@@ -19,9 +18,8 @@ char* write_place_on_path(const Model& model, int kinematics, double t, char* to
   for (std::size_t i = 0; i < path_numbers(model.space); ++i) {
     // A quaternion has one number more than the turns that come of it, which are given together.
     if (!path.gives(i) || !std::isfinite(pose[i].value)) continue;
-    to = fmt::format_to_n(to, static_cast<std::size_t>(end - to), "{}{} = {:.9g} {}", before,
-                          path_words(model.space)[i], pose[i].value, i < lengths ? "m" : "rad")
-             .out;
+    to = format_into(to, end, "{}{} = {:.9g} {}", before, path_words(model.space)[i], pose[i].value,
+                     i < lengths ? "m" : "rad");
     before = ", ";
   }
   return to;

@@ -1,4 +1,5 @@
 """Belts pull as statics says, keep the ratio of their radii, swing, and go slack."""
+import json
 import math
 import unittest
 
@@ -38,6 +39,13 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
             message = self.refusal((text % strands).replace("[0.5, 0]", "[%s, 0]" % distance), id="starts-inside", line=7)[0]
             self.assertIn(words, message["message"])
             self.facts((text % strands).replace("[0.5, 0]", "[%s + 0.0011, 0]" % distance))
+
+    def test_a_radius_in_millimetres_is_doubted_besides(self):
+        text = (self.TEXT % (400, "open", "0 N*m", "0", 1, "step: 1 ms")).replace("first_radius: 50 mm", "first_radius: 50")
+        out, _ = self.freeplay("validate", self.model(text, "freeplay: 1\n"), "--json", code=3)
+        found = {message["id"]: message["message"] for message in json.loads(out)["messages"]}
+        self.assertEqual({"starts-inside", "doubtful-length"}, set(found))
+        self.assertIn("'50 mm'", found["doubtful-length"])
 
     def test_the_ratio_is_that_of_the_radii(self):
         for strands, ratio in (("open", 5 / 12), ("crossed", -5 / 12)):

@@ -154,7 +154,6 @@ MISTAKES = [
     (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "the motor is on the slow side", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "kind: velocity, value: 10", "kind: velocity, value: 600000 rpm", "doubtful-speed", "600000", "'one' would turn with 1.99e+03 m/s"),
-    (BELT, "first_radius: 0.05", "first_radius: 50", LENGTH, "50", "50 mm"),
     (WATCH, "1.2e-9", "1.2", INERTIA, "1.2", "a disc of it would have 4.8e-10 kg/m^2"),
     (TEETH, "w: [150 mm, 0]", "w: [150, 0]", LENGTH, "20 deg", "150 m apart, but the radii of gyration of their wheels come to 0.074 m"),
     (CRANK, "forces:\n", "  second: {type: distance, between: [coupler, slider], length: 0.12}\nforces:\n", "play-bypassed", "wrist",
