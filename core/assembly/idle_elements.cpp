@@ -125,7 +125,7 @@ class Elements {
     return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) < one_place;
   }
 
-  // A spring, and not a bushing, which turns as well.
+  // What is a line between two points, and not what turns as well.
   static bool acts_along_line(const JointElement& element) {
     return element.ideal_layout.coordinate == Coordinate::none && element.parameters->values.contains("free_length");
   }

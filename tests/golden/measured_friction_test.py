@@ -154,6 +154,15 @@ class FrictionByTable(Outside):
                 self.assertIn("m.yaml" + place, err)
                 self.assertIn(words, err)
 
+    def test_a_table_in_a_file_is_the_same_table(self):
+        self.write("mu.csv", "# measured\nspeed,mu\n0,0.4\n5,0.25\n10,0.2\n15,0.3\n")
+        law = "{law: friction-over-speed, coefficient: {file: mu.csv, x_unit: cm/s}, vs: 0.2 mm/s}"
+        self.assertEqual(self.run_block(OVER_SPEED_LAW), self.run_block(law))
+        self.freeplay("reproduce", "out", "--allow-plugins")  # from the files that the result keeps
+        self.write("mu.csv", "speed,mu\n0,0.4\n-5,0.25\n10,-0.2\n")
+        _, err = self.freeplay("validate", self.model(BLOCK % (law, "1 ms")), "--allow-plugins", code=3)
+        self.assertIn("mu.csv:3:1: error: the first numbers of points must increase", err)
+
     def test_one_number_of_a_table_is_set_by_its_path(self):
         model = self.model(BLOCK % (OVER_SPEED_LAW, "1 ms"))
         path = "joints.G.clearance.friction.coefficient"
@@ -179,9 +188,13 @@ class DescribedTables(Outside):
     def test_the_schema_takes_lists_and_points(self):
         schema = json.loads(self.freeplay("schema", "--plugin", "./friction.so", "--plugin", "./spring.so")[0])
         table = schema["$defs"]["friction-law-friction-over-speed"]["properties"]["coefficient"]
+        table, name, keys = table["anyOf"]
+        self.assertEqual(("string", r"\.csv$"), (name["type"], name["pattern"]))
+        self.assertEqual({"file", "x", "value", "x_unit", "unit"},
+                         set(schema["$defs"][keys["$ref"].rsplit("/")[-1]]["properties"]))
         self.assertEqual(("array", 1, 1000), (table["type"], table["minItems"], table["maxItems"]))
         self.assertEqual((2, 2), (table["items"]["minItems"], table["items"]["maxItems"]))
-        bent = schema["$defs"]["joint-yielding-spring"]["properties"]["set"]
+        bent = schema["$defs"]["joint-yielding-spring"]["properties"]["set"]["anyOf"][0]
         self.assertEqual((100, "#/$defs/quantity"), (bent["maxItems"], bent["items"]["$ref"]))
 
     def test_both_libraries_keep_the_contract(self):
