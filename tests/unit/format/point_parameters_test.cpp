@@ -1,11 +1,11 @@
 // Parameters that are lists of numbers or tables of points.
-#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
 #include "component/instances.h"
 #include "model_text.h"
+#include "unit/scratch_folder.h"
 
 namespace freeplay {
 namespace {
@@ -108,12 +108,12 @@ TEST(PointParameters, ThatAreOptionalMayBeAbsent) {
   EXPECT_EQ(law_of(built).values.find("loads")->second.points, nullptr);
 }
 
-/// Keys of the law with its numbers in a file, and where that is.
+/// Keys of the law with its numbers in a file, and where that is. Tests run beside each other.
 struct FromFile {
-  FromFile(const char* name, const std::string& text)
-      : path((std::filesystem::path(::testing::TempDir()) / (std::string(name) + ".csv")).string()) {
+  FromFile(const char* name, const std::string& text) : path(folder.file(std::string(name) + ".csv").string()) {
     std::ofstream(path) << text;
   }
+  ScratchFolder folder;
   std::string path;
 };
 
@@ -150,7 +150,7 @@ class FileMistakes : public ::testing::TestWithParam<FileMistake> {};
 TEST_P(FileMistakes, AreReportedAtTheirPlace) {
   const FromFile file("mistake", GetParam().text);
   std::string keys = GetParam().keys;
-  for (std::size_t at = keys.find("FILE"); at != std::string::npos; at = keys.find("FILE"))
+  for (std::size_t at = keys.find("FILE"); at != std::string::npos; at = keys.find("FILE", at + file.path.size()))
     keys.replace(at, 4, file.path);
   const Built built = build_pin(keys);
   EXPECT_FALSE(built.model);
