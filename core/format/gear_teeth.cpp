@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "format/doubtful_number.h"
 #include "model/gear_teeth.h"
 
 namespace freeplay {
@@ -18,9 +19,8 @@ constexpr double farthest_axles = 100.0;               // by the radii of gyrati
 std::optional<double> pressure_angle_of(const CheckedValue& written) {
   const std::optional<double> angle = written.quantity(dimension::angle);
   if (!angle || (*angle > 0.0 && *angle <= largest_pressure_angle)) return angle;
-  const bool bare = written.node().text.find_first_not_of("0123456789.+-eE ") == std::string::npos;
   const double in_degrees = *angle * M_PI / 180.0;
-  const bool unit_forgotten = bare && in_degrees > 0.0 && in_degrees <= largest_pressure_angle;
+  const bool unit_forgotten = !names_a_unit(written) && in_degrees > 0.0 && in_degrees <= largest_pressure_angle;
   written.fail("out-of-range", "'" + written.path() + "' must be above 0 and not above 45 deg", {},
                unit_forgotten ? fmt::format("a number without a unit is in rad; write '{:g} deg'", *angle)
                               : "usual are 14.5 deg, 20 deg and 25 deg");
