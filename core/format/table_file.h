@@ -29,7 +29,7 @@ class TableFile {
   bool open(std::size_t least = 2);
   const CsvText& text() const { return *text_; }
   /// By its name or, without one, the one at the place `standard`.
-  std::optional<std::size_t> column(const std::optional<CheckedValue>& name, std::size_t standard) const;
+  std::optional<std::size_t> column(const std::optional<CheckedValue>& value, std::size_t standard) const;
   /// The numbers of `times`, which must increase unless `rising` says else, and of the others. False after an error.
   bool read(const Column& times, const std::vector<Column>& others, std::vector<double>& t,
             std::vector<std::vector<double>>& values, Rising rising = Rising::times) const;

@@ -16,7 +16,7 @@ std::shared_ptr<const TimeTable> read_table(Draft& draft, const CheckedValue& va
                                             TableSource* source = nullptr);
 
 /// What numbers in this unit are multiplied by to be SI: 1 without one.
-std::optional<double> unit_factor(const std::optional<CheckedValue>& unit, const Dimension& wanted);
+std::optional<double> unit_factor(const std::optional<CheckedValue>& value, const Dimension& wanted);
 /// Place in the list of words: 0 without one.
 std::optional<int> word_place(const std::optional<CheckedValue>& value, const std::vector<std::string>& words);
 
