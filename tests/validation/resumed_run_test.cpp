@@ -144,14 +144,33 @@ void expect_same_end(const Result& whole, const Saved& from, const Result& rest,
   EXPECT_TRUE(whole.end == rest.end) << "state at the end";
 }
 
-void resume_everywhere(const Resumption& what) {
+/// From one saved state to the next one.
+void expect_same_stretch(const Result& whole, const Saved& from, const Saved& to, const Result& rest, std::size_t columns) {
+  const std::size_t begin = static_cast<std::size_t>(from.state.rows) * columns;
+  const std::size_t end = static_cast<std::size_t>(to.state.rows) * columns;
+  ASSERT_LE(end, whole.numbers.size());
+  ASSERT_LE(end - begin, rest.numbers.size());
+  EXPECT_TRUE(same_bits(std::span(whole.numbers).subspan(begin, end - begin), std::span(rest.numbers).first(end - begin)));
+  EXPECT_EQ(to.events - from.events, rest.events.size());
+  EXPECT_TRUE(to.state == rest.end) << "state at the next";
+}
+
+enum class Until { end, next };  ///< how far a run goes on from each saved state
+
+void resume_everywhere(const Resumption& what, Until until = Until::end) {
   Prepared prepared(what), fresh(what);
   Result whole;
   const std::vector<Saved> saved = save_on_the_way(prepared, what, whole);
   const std::size_t columns = Channels(*prepared.model).all().size();
-  for (const Saved& from : saved) {
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    const Saved& from = saved[i];
     SCOPED_TRACE("from step " + std::to_string(from.state.steps));
-    expect_same_end(whole, from, run_on(fresh, what.most_steps, &from.state, {}), columns);
+    if (until == Until::next && i + 1 < saved.size()) {
+      const Saved& to = saved[i + 1];
+      expect_same_stretch(whole, from, to, run_on(fresh, static_cast<long>(to.state.steps), &from.state, {}), columns);
+    } else {
+      expect_same_end(whole, from, run_on(fresh, what.most_steps, &from.state, {}), columns);
+    }
   }
   EXPECT_TRUE(!saved.empty() || whole.outcome.status == RunStatus::failed);
 }
@@ -205,7 +224,7 @@ TEST_P(ResumedModel, EndsBitForBitWithEveryIntegratorLong) {
       const Resumption what{GetParam(), integrator, steps, most_steps};
       SCOPED_TRACE(::testing::PrintToString(what));
       try {
-        resume_everywhere(what);
+        resume_everywhere(what, Until::next);  // each state is reached again from the one before: together, to the end
       } catch (const Error& error) {  // as of steps that an integrator does not take
         EXPECT_EQ(error.category(), Error::Category::input) << error.what();
       }
