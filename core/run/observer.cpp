@@ -16,13 +16,22 @@
 
 namespace freeplay {
 
+Observer::Observer(const System& system, const Channels& channels)
+    : system_(system),
+      channels_(channels),
+      motion_(system.model(), system.layout(), system.markers(), system.joints()) {
+  for (int j = 0; j < system.joints().count(); ++j) {
+    if (!system.joints().layout(j).channels.empty()) with_own_.push_back(j);
+  }
+}
+
 bool Observer::observe(const State& state, const Evaluation& e, std::span<double> row, Fault& fault) {
   const Model& model = system_.model();
   const Point point = freeplay::point(state);
   const std::span<const double> lambda = state.lambda();
   observe_loads(state, e, row);
-  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
-    observe_coordinate(j, e, row);
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) observe_coordinate(j, e, row);
+  for (const int j : with_own_) {
     if (!observe_own(j, point, e, lambda, row, fault)) return false;
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) observe_driver(d, e, row);
@@ -112,7 +121,6 @@ bool Observer::observe_own(int index, const Point& point, const Evaluation& e, s
                            std::span<double> row, Fault& fault) const {
   const JointColumns& columns = channels_.joints[at(index)];
   const std::size_t own = system_.joints().layout(index).channels.size;
-  if (own == 0) return true;
   const Slice rows = system_.layout().rows(index);
   const Span<double> values(row.data() + columns.own, own);
   if (system_.joints().handle(index).observe(system_.joints().input(index, point, e),

@@ -13,10 +13,7 @@ namespace freeplay {
 /// Fills every column but dissipated, work and residual, which the energy account knows.
 class Observer {
  public:
-  Observer(const System& system, const Channels& channels)
-      : system_(system),
-        channels_(channels),
-        motion_(system.model(), system.layout(), system.markers(), system.joints()) {}
+  Observer(const System& system, const Channels& channels);
 
   /// `e` holds all terms at the point of `state`. False, with `fault` filled, when a joint's observation fails.
   bool observe(const State& state, const Evaluation& e, std::span<double> row, Fault& fault);
@@ -41,6 +38,7 @@ class Observer {
   MotionWork motion_work_;
   const Channels& channels_;
   MotionChannels motion_;
+  std::vector<int> with_own_;  // joints whose type has channels
 };
 
 }  // namespace freeplay

@@ -152,8 +152,8 @@ bool StepAttempt::make(double dt, bool& converged) {
   }
   converged = attempt.converged != 0;
   run_.error = attempt.error;
-  const bool finite = is_finite(Span<const double>(run_.trial.before_history()));
-  if (run_.adaptive && converged && finite && !(attempt.error >= 0.0) && !failure_.all_built_in()) {
+  if (run_.adaptive && converged && !(attempt.error >= 0.0) && !failure_.all_built_in() &&
+      is_finite(Span<const double>(run_.trial.before_history()))) {
     return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: its estimate of the error is {} [plugin-failed]",
                                         run_.accepted.t(), integrator_words(run_.model), attempt.error));
   }

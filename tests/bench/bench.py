@@ -14,6 +14,7 @@ import sys
 
 import formulas
 import instructions
+import loose_slider
 import page
 import pareto
 import parts
@@ -34,6 +35,7 @@ PARTS = {
     "output": ("what rows at 1 kHz of all channels cost", parts.output),
     "instructions": ("machine instructions of runs by fixed steps and by accuracy, which repeat on a busy machine", instructions.measure),
     "formulas": ("instructions of formulas of the motion, up to 10 000 of them, and beside the same load in C++", formulas.measure),
+    "loose-slider": ("instructions of a slider-crank with play in its guide beside one with play in its wrist", loose_slider.measure),
     "studies": ("what the engine of studies costs a point, and memory and time of 10^5 points", studies.studies),
 }
 

@@ -140,8 +140,8 @@ def beside(bench):
         ours = count(bench.program.path, write(bench, "load-formula", MACHINE % ("", formula)), options, folder)
         theirs = count(bench.program.path, write(bench, "load-plugin", MACHINE % ("plugins: [%s]" % library, plugin)),
                        [*options, "--allow-plugins"], folder)
-        steps = [counts["steps"] for _, counts in (ours, theirs)]
-        each = [number / counts["steps"] for number, counts in (ours, theirs)]
+        steps = [summary["counts"]["steps"] for _, summary in (ours, theirs)]
+        each = [number / taken for (number, _), taken in zip((ours, theirs), steps)]
         rows.append([name, steps[0], "%.0f" % each[0], steps[1], "%.0f" % each[1], "%+.1f %%" % (100 * (ours[0] / theirs[0] - 1))])
         found.append({"name": name, "formula": ours[0], "plugin": theirs[0], "steps": steps})
     bench.print(table(["load", "formula: steps", "instructions a step", "plugin: steps", "instructions a step", "whole run"], rows))

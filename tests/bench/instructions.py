@@ -40,7 +40,7 @@ QUICK = (of_problem("slider-crank", "verner7", "accuracy", 4e-4, 2e-4),)
 
 
 def count(program, model, options, folder):
-    """(instructions, summary's counts) of a run."""
+    """(instructions, summary) of a run."""
     log = os.path.join(folder, "callgrind.out")
     os.makedirs(folder, exist_ok=True)
     words = ["valgrind", "--tool=callgrind", *("--toggle-collect=" + name for name in COUNTED), "--callgrind-out-file=" + log,
@@ -52,7 +52,7 @@ def count(program, model, options, folder):
     found = re.search(r"Collected : (\d+)", done.stderr)
     if done.returncode != 0 or not found or int(found[1]) == 0:
         raise Failed("%s: %s" % (" ".join(words), done.stderr.strip()[-2000:]))
-    return int(found[1]), Run(os.path.join(folder, "run"), 0.0, 0.0, 0).summary["counts"]
+    return int(found[1]), Run(os.path.join(folder, "run"), 0.0, 0.0, 0).summary
 
 
 def measure(bench, other=None):
@@ -61,13 +61,15 @@ def measure(bench, other=None):
     for label, what, options in QUICK if bench.quick else RUNS:
         model = what if isinstance(what, str) else what.timed_file(bench.build)
         folder = os.path.join(bench.build, "runs", "counted")
-        ours, counts = count(bench.program.path, model, options, folder)
+        ours, summary = count(bench.program.path, model, options, folder)
+        counts = summary["counts"]
         record = {"name": label, "options": options, "instructions": ours, "steps": counts["steps"]}
         words = dict(zip(options[::2], options[1::2]))
         row = [label, " ".join([words.get("--integrator", "as the file"), *options[-2:]]).replace("--", ""), counts["steps"],
                "%.2f" % (1e-6 * ours), "%.0f" % (ours / counts["steps"])]
         if other:
-            record["other"], counts = count(other, model, options, os.path.join(bench.build, "runs", "counted-other"))
+            record["other"], summary = count(other, model, options, os.path.join(bench.build, "runs", "counted-other"))
+            counts = summary["counts"]
             record["other_steps"] = counts["steps"]
             row += [counts["steps"], "%.2f" % (1e-6 * record["other"]), "%+.1f %%" % (100.0 * (ours / record["other"] - 1.0))]
         rows.append(row)

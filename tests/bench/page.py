@@ -84,7 +84,7 @@ def of_studies(found):
     return markdown(*studies.rows_of_engine(found)) + "\n" + markdown(*studies.rows_of_large(found))
 
 
-MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies, "instructions": of_instructions, "formulas": of_formulas,
+MAKERS = {"kernels": of_kernels, "growth": of_growth, "startup": of_start, "load": of_load, "output": of_output, "studies": of_studies, "instructions": of_instructions, "loose-slider": of_instructions, "formulas": of_formulas,
           **{name: of_problem for name in PROBLEMS}}
 
 

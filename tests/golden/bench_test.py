@@ -52,6 +52,19 @@ class Bench(ProgramTest):
         for own in found["large"]:
             self.assertTrue(1e6 < own["parent_bytes"] < 1e9 and own["merge_seconds"] > 0.0, own)
 
+    def test_loose_pin_and_loose_slider_do_the_same_beside_each_other(self):
+        import loose_slider
+        for name, joint in loose_slider.MODELS:
+            for label, options in loose_slider.RUNS:
+                self.freeplay("run", os.path.join(FOLDER, name + ".yaml"), *options, "--force", "--out", self.path(name))
+                own = json.loads(self.read(name, "summary.json"))
+                contact = own["joints"][joint]["contact_fraction"]
+                if label == "in flight":
+                    self.assertEqual(("completed", 0.0), (own["status"], contact))
+                else:
+                    self.assertEqual(("completed", "good", []), (own["status"], own["trust"]["verdict"], own["warnings"]))
+                    self.assertGreater(contact, 0.95, (name, options))
+
     def test_mistyped_words_get_the_nearest(self):
         for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["3-RRR"], "did you mean '3-rrr'?"), (["--quik"], "did you mean '--quick'?"),
                               (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "neither --quick")):
