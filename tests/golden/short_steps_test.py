@@ -54,7 +54,7 @@ class ShortSteps(ProgramTest):
         self.write("m.yaml", DROP)
         out, err = self.freeplay("run", "m.yaml", "--out", "r")
         self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' lets them "
-                              r"be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .* 'initial: loaded'")
+                              r"be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
         reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
         self.assertIn(("short-steps", "joint 'hole'"), [(r["id"], r["element"]) for r in reasons])
         self.assertIn("trust: doubtful", out)
