@@ -110,6 +110,19 @@ std::string_view last_word(std::string_view path) {
   return dot == std::string_view::npos ? path : path.substr(dot + 1);
 }
 
+/// Calls `names(text)` for every text of a list or a map.
+template <class Names>
+bool any_text(const CheckedValue& value, const Names& names) {
+  if (value.node().is_scalar()) return names(value);
+  for (std::size_t k = 0; k < value.node().items.size(); ++k) {
+    if (any_text(value.item(k), names)) return true;
+  }
+  for (const Node::Entry& entry : value.node().entries) {
+    if (any_text(CheckedValue(value.reading(), *entry.value, entry.key, value.path()), names)) return true;
+  }
+  return false;
+}
+
 void doubt_range(const CheckedValue& written, std::string_view unit, double value) {
   for (const UsualRange& range : usual_ranges) {
     if (range.unit != unit || value == 0.0) continue;
@@ -145,14 +158,24 @@ bool names_a_unit(const CheckedValue& written, Arguments arguments) {
 }
 
 bool says_unit(const CheckedValue& value, Arguments arguments) {
-  if (value.node().is_scalar()) return names_a_unit(value, arguments);
-  for (std::size_t k = 0; k < value.node().items.size(); ++k) {
-    if (says_unit(value.item(k), arguments)) return true;
-  }
-  for (const Node::Entry& entry : value.node().entries) {
-    if (says_unit(CheckedValue(value.reading(), *entry.value, entry.key, value.path()), arguments)) return true;
-  }
-  return false;
+  return any_text(value, [&](const CheckedValue& text) { return names_a_unit(text, arguments); });
+}
+
+bool says_time(const CheckedValue& value) {
+  return any_text(value, [](const CheckedValue& written) {
+    const std::string& text = written.node().text;
+    const auto is_time = [&](std::string_view word, bool parameter) {
+      if (parameter) {
+        const Quantity* quantity = written.reading().scope->find(word);
+        return quantity != nullptr && quantity->kind == DimensionKind::dimensioned &&
+               quantity->dimension == dimension::time;
+      }
+      const std::size_t before = text.find_last_not_of(' ', static_cast<std::size_t>(word.data() - text.data()) - 1);
+      const bool divides = word.data() != text.data() && before != text.npos && text[before] == '/';
+      return !divides && is_unit_name(word) && parse_unit(word).dimension == dimension::time;
+    };
+    return written.node().is_scalar() && any_word(text, is_time, Arguments::read);
+  });
 }
 
 bool doubt_angle(const CheckedValue& written, double radians) {

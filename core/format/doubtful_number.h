@@ -32,6 +32,8 @@ enum class Arguments { passed_over, read };
 bool names_a_unit(const CheckedValue& written, Arguments arguments = Arguments::passed_over);
 /// The same for any text within a list or a map.
 bool says_unit(const CheckedValue& value, Arguments arguments = Arguments::passed_over);
+/// True if a unit of time stands somewhere in the text, in brackets of functions, too: that of 5 m/s is none.
+bool says_time(const CheckedValue& value);
 
 /// `doubtful-angle`: beyond a turn, without a unit, and no multiple of pi. True after a message.
 bool doubt_angle(const CheckedValue& written, double radians);

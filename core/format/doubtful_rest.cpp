@@ -12,71 +12,145 @@
 namespace freeplay {
 namespace {
 
-constexpr std::size_t most_formulas = 2000;  // that are looked at
-constexpr double runs = 10.0;                // for which nothing happens
+constexpr std::size_t most_formulas = 2000;   // that are looked at
+constexpr double later[] = {10.0, 1e3, 1e6};  // runs in which what rests may begin
+constexpr double inside = 1.0 - 1e-9;         // part of the run: what begins at its very end does so after it
 
-// A polynomial of low degree that has one value at many instants is that value.
-bool stays(const Expression& formula, const Settings& settings) {
-  const Course course = course_of(formula, settings, runs);
-  if (!course.known || course.low != course.high) return false;
-  const Outline outline = formula.outline(settings.start, settings.start + runs * (settings.end - settings.start));
-  return outline.corners.empty() && std::ranges::all_of(outline.rates, [](double rate) { return rate == 0.0; });
-}
+/// One entry of `drivers` or `forces` whose formulas or table depend on time.
+struct Waiting {
+  CheckedValue written;
+  bool is_load = false;  ///< a force, torque or effort: zero is nothing at all
+  bool zero = true;      ///< in the whole run
+  double begins = unbounded;
+};
 
-/// Of what depends on time, all rests.
-bool all_stay(const std::vector<const Expression*>& formulas, const Settings& settings) {
-  bool any = false;
-  for (const Expression* formula : formulas) {
-    if (!formula->depends_on_time()) continue;
-    if (!stays(*formula, settings)) return false;
-    any = true;
+class RestDoubts {
+ public:
+  explicit RestDoubts(const Draft& draft) : draft_(draft), settings_(draft.model.settings) {}
+
+  void judge(const Driver& driver) const {
+    const auto entry = map_of("drivers", driver.name);
+    if (!entry) return;
+    MapReader map(*entry, "driver");
+    const bool is_load = !prescribes(driver.kind);
+    if (driver.table) {
+      const auto written = map.find("table");
+      if (written) judge(*driver.table, {.written = *written, .is_load = is_load});
+      return;
+    }
+    const auto written = map.find("value");
+    if (!written) return;
+    if (driver.by_motion.empty()) {
+      judge({&driver.value, 1}, {.written = *written, .is_load = is_load});
+    } else {
+      judge(driver.in_time, {.written = *written, .is_load = is_load, .zero = false});
+    }
   }
-  return any;
-}
 
-void judge(const Draft& draft, const char* section, const std::string& name, const char* format,
-           const std::vector<const Expression*>& formulas) {
-  const Settings& settings = draft.model.settings;
-  if (!all_stay(formulas, settings)) return;
-  const auto entry = entry_of(draft, section, name);
-  if (!entry || !entry->node().is_map()) return;
-  MapReader map(*entry, format == nullptr ? "driver" : "force");
-  if (format != nullptr) map.follow(format);
-  const auto written = map.find("value");
-  if (!written || says_unit(*written, Arguments::read)) return;
-  written->warn(
-      "doubtful-time",
-      fmt::format("'{}' depends on t, but the run ends at {:.4g} s, long before it begins to change: write the "
-                  "unit after its times, as in 'ms', or check the end of the run",
-                  written->path(), settings.end));
-}
+  void judge(const AppliedForce& force) const {
+    const auto entry = map_of("forces", force.name);
+    if (!entry) return;
+    MapReader map(*entry, "force");
+    map.follow(force.kind == ForceKind::torque ? "force torque" : "force force");
+    const auto written = map.find("value");
+    if (!written) return;
+    const bool plain = force.by_motion.empty();
+    judge(plain ? force.value : force.in_time, {.written = *written, .is_load = true, .zero = plain});
+  }
+
+ private:
+  std::optional<CheckedValue> map_of(const char* section, const std::string& name) const {
+    const auto entry = entry_of(draft_, section, name);
+    return entry && entry->node().is_map() ? entry : std::nullopt;
+  }
+
+  double span() const { return settings_.end - settings_.start; }
+
+  /// A polynomial of low degree that has one value at many instants is that value.
+  bool stays(const Expression& formula, double runs) const {
+    const Course course = course_of(formula, settings_, runs);
+    if (!course.known || course.low != course.high) return false;
+    const Outline outline = formula.outline(settings_.start, settings_.start + runs * span());
+    return outline.corners.empty() && std::ranges::all_of(outline.rates, [](double rate) { return rate == 0.0; });
+  }
+
+  /// When a formula that rests in the run begins to change; infinite where it does not in a very long time.
+  double beginning(const Expression& formula) const {
+    for (const double runs : later) {
+      const Outline outline = formula.outline(settings_.start + inside * span(), settings_.start + runs * span());
+      if (!outline.corners.empty()) return outline.corners.front().time;
+    }
+    return unbounded;
+  }
+
+  void judge(std::span<const Expression> formulas, Waiting waiting) const {
+    bool any = false;
+    for (const Expression& formula : formulas) {
+      if (formula.depends_on_time() && !stays(formula, inside)) return;
+      any = any || formula.depends_on_time();
+      const Course course = course_of(formula, settings_, inside);
+      waiting.zero = waiting.zero && course.known && course.low == 0.0 && course.high == 0.0;
+    }
+    if (!any) return;
+    for (const Expression& formula : formulas) {
+      if (formula.depends_on_time()) waiting.begins = std::min(waiting.begins, beginning(formula));
+    }
+    if (!says_time(waiting.written)) {
+      warn(waiting, "write the unit after its times, as in 'ms', or check the end of the run");
+    } else if (waiting.is_load && waiting.zero) {
+      warn(waiting, "check its times and the end of the run");
+    }
+  }
+
+  void judge(const TimeTable& table, Waiting waiting) const {
+    const double end = settings_.start + inside * span();
+    const std::span<const double> times = table.times(), values = table.values();
+    const auto last = static_cast<std::size_t>(std::ranges::upper_bound(times, end) - times.begin());
+    Jet first, jet;
+    EvaluationFailure failure;
+    // Of a table that is repeated all is in the run, or the run is in all.
+    const bool known = table.evaluate(settings_.start, first, failure) && table.evaluate(end, jet, failure);
+    if (!known || last == times.size()) return;
+    for (std::size_t i = 0; i <= 128; ++i) {
+      const double t = settings_.start + (end - settings_.start) * static_cast<double>(i) / 128.0;
+      if (!table.evaluate(t, jet, failure) || jet.value != first.value) return;
+    }
+    for (std::size_t i = 0; i < last; ++i) {
+      if (values[i] != first.value) return;
+    }
+    const auto changes = std::ranges::find_if(values, [&](double value) { return value != first.value; });
+    if (changes == values.end()) return;
+    const auto place = static_cast<std::size_t>(changes - values.begin());
+    waiting.zero = first.value == 0.0, waiting.begins = times[place > 0 ? place - 1 : 0];
+    warn(waiting, "check the unit of its times, or the end of the run");
+  }
+
+  void warn(const Waiting& waiting, const char* remedy) const {
+    const bool nothing = waiting.is_load && waiting.zero;
+    std::string begins;
+    if (waiting.begins < unbounded) begins = fmt::format(", at {:.4g} s", waiting.begins);
+    const bool is_long = !(waiting.begins < settings_.start + later[0] * span());
+    waiting.written.warn(
+        "doubtful-time",
+        fmt::format("'{}' depends on t, but the run ends at {:.4g} s, {}before it begins to change{}{}: {}",
+                    waiting.written.path(), settings_.end, is_long ? "long " : "", begins,
+                    nothing ? ", so that it is zero all the time" : "", remedy));
+  }
+
+  const Draft& draft_;
+  const Settings& settings_;
+};
 
 }  // namespace
 
 void doubt_rests(const Draft& draft) {
   if (draft.options.end) return;  // an end given to the run, not by the file, may cut it short on purpose
+  const RestDoubts doubts(draft);
   const Model& model = draft.model;
-  std::vector<const Expression*> formulas;
-  const auto take = [&](const std::vector<Expression>& parts) {
-    for (const Expression& part : parts) formulas.push_back(&part);
-  };
   for (std::size_t i = 0; i < std::min(model.drivers.size(), most_formulas); ++i) {
-    const Driver& driver = model.drivers[i];
-    if (driver.table || driver.kinematics >= 0) continue;
-    formulas.clear();
-    if (driver.by_motion.empty()) {
-      formulas.push_back(&driver.value);
-    } else {
-      take(driver.in_time);
-    }
-    judge(draft, "drivers", driver.name, nullptr, formulas);
+    if (model.drivers[i].kinematics < 0) doubts.judge(model.drivers[i]);
   }
-  for (std::size_t i = 0; i < std::min(model.forces.size(), most_formulas); ++i) {
-    const AppliedForce& force = model.forces[i];
-    formulas.clear();
-    take(force.in_time);
-    judge(draft, "forces", force.name, force.kind == ForceKind::torque ? "force torque" : "force force", formulas);
-  }
+  for (std::size_t i = 0; i < std::min(model.forces.size(), most_formulas); ++i) doubts.judge(model.forces[i]);
 }
 
 }  // namespace freeplay

@@ -19,8 +19,9 @@
 namespace freeplay {
 namespace {
 
-// Of bearings: clearances are 0.1 to 1 % of the radius, worn ones 5 %; polished surfaces are rough by 10 nm.
-constexpr double widest_play = 0.5;      // in smaller radii
+// Of bearings: clearances are 0.1 to 1 % of the radius, worn ones and those of studies 5 %; polished surfaces are rough
+// by 10 nm.
+constexpr double widest_play = 0.15;     // in smaller radii
 constexpr double narrowest_play = 1e-8;  // [m]
 // Moduli of the bodies that a contact is as stiff as: a tenth of soft rubber's, ten times diamond's.
 constexpr double softest = 1e5, hardest = 1.2e13;  // [Pa]

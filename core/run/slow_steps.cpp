@@ -15,6 +15,7 @@ constexpr double many = 1e7;       // steps of a whole run: minutes
 constexpr double endless = 1e11;   // a day at a million a second
 constexpr double quick = 0.02;     // part of itself by which a force changes from step to step
 constexpr double chatters = 0.75;  // likewise: it is another one after each step, however few they are
+constexpr double too_fine = 5.0;   // steps in a half wave of a contact, by those that an impact should take
 
 /// Of two vectors of three components, by the larger: 0 to 2.
 double difference(const double* a, const double* b) {
@@ -29,7 +30,8 @@ SlowSteps::SlowSteps(RunContext& run, RunFailure& failure)
     : run_(run),
       failure_(failure),
       from_(run.settings.start),
-      changes_(run.model.joints.size() + run.model.drivers.size()) {}
+      changes_(run.model.joints.size() + run.model.drivers.size()),
+      contacts_(run) {}
 
 // The last step goes from what the trial's evaluation holds now to the accepted one.
 double SlowSteps::change_of(std::size_t load) const {
@@ -46,6 +48,7 @@ double SlowSteps::change_of(std::size_t load) const {
 }
 
 void SlowSteps::watch() {
+  if (steps_ == block - watched + 1) watched_from_ = run_.accepted.t();
   for (std::size_t i = 0; i < changes_.size(); ++i) changes_[i] += change_of(i) / watched;
 }
 
@@ -68,16 +71,35 @@ SlowSteps::Blame SlowSteps::blame() const {
                             100.0 * std::min(*most, 1.0))};
 }
 
+// Steps as long as the time constant m/c of a contact are as long as an explicit method can take. Where they are far
+// shorter than what the contact does as a spring, it is the damping alone that asks for them.
+void SlowSteps::judge_contacts(double all) {
+  if (!contacts_.any() || run_.integrator_layout.explicit_stages == 0) return;
+  const double step = (run_.accepted.t() - watched_from_) / static_cast<double>(watched - 1);
+  const ContactPace pace = contacts_.fastest();
+  const double fineness = M_PI / (pace.swing * step), limit = too_fine * run_.settings.per_contact;
+  if (!(pace.damping * step > 1.0 && fineness > limit)) return;
+  element_ = name_of(at(pace.joint)), value_ = fineness, limit_ = limit;
+  sentence_ = fmt::format(
+      "steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}; {} lets them be no longer: {} is "
+      "damped {:.2g} times as much as stops it from swinging, with a time constant of {:.2g} s; start it in contact "
+      "under its load ('initial: loaded'), take a law or a restitution that damps less, or steps of one size",
+      step, run_.accepted.t(), all, element_, contacts_.words(pace), 0.5 * pace.damping / pace.swing,
+      1.0 / pace.damping);
+}
+
 bool SlowSteps::judge() {
   const double t = run_.accepted.t(), step = (t - from_) / static_cast<double>(steps_);
   const double all = static_cast<double>(run_.outcome.steps) + (run_.settings.end - t) / step;
   const bool chattering = std::ranges::any_of(changes_, [](double change) { return change > chatters; });
   bool going = true;
+  if (sentence_.empty() && !(all > endless)) judge_contacts(all);
   if (sentence_.empty() && (all > many || chattering)) {
     Blame blame = this->blame();
     sentence_ = fmt::format("steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}{}{}", step, t,
                             all, blame.words.empty() ? "" : "; ", blame.words);
-    element_ = std::move(blame.element), step_ = step;
+    element_ = std::move(blame.element);
+    value_ = step, limit_ = (run_.settings.end - run_.settings.start) / many;
     going = !(all > endless);
     if (!going) failure_.fail(4, fmt::format("t = {:.9g} s: the run does not come to its end: {}", t, sentence_));
   }
@@ -99,8 +121,8 @@ void SlowSteps::add_doubt() {
                                  .level = Trust::doubtful,
                                  .message = sentence_,
                                  .element = element_,
-                                 .value = step_,
-                                 .limit = (run_.settings.end - run_.settings.start) / many});
+                                 .value = value_,
+                                 .limit = limit_});
 }
 
 }  // namespace freeplay

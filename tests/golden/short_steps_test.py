@@ -15,6 +15,22 @@ parameters: {c: 1e12}
 simulation: {end: 2 s, accuracy: 1 um, integrator: dopri5}
 """
 
+# A pin that just touches its hole: its contact begins at no speed, by which the law divides its damping.
+DROP = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {pin: {mass: 1, inertia: 1e-3}}
+joints:
+  hole:
+    type: revolute
+    between: [ground, pin]
+    clearance:
+      radial_clearance: 0.1 mm
+      bearing_radius: 10 mm
+      initial: {eccentricity: [0 mm, -0.1 mm]}
+      contact: {law: flores, K: 1e8, restitution: 0.001}
+simulation: {end: 0.1 s, accuracy: 1 um}
+"""
+
 
 class ShortSteps(ProgramTest):
     def test_a_run_that_would_take_days_ends_and_names_the_cause(self):
@@ -33,6 +49,20 @@ class ShortSteps(ProgramTest):
         self.write("m.yaml", MODEL.replace("end: 2 s", "end: 20 ms"))
         out, err = self.freeplay("run", "m.yaml", "--out", "r", "--set", "c=1e5")
         self.assertNotIn("of which the whole run", out + err)
+
+    def test_a_contact_that_damps_too_much_for_longer_steps_is_named(self):
+        self.write("m.yaml", DROP)
+        out, err = self.freeplay("run", "m.yaml", "--out", "r")
+        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' lets them "
+                              r"be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
+        reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
+        self.assertIn(("short-steps", "joint 'hole'"), [(r["id"], r["element"]) for r in reasons])
+        self.assertIn("trust: doubtful", out)
+
+    def test_a_contact_that_starts_under_its_load_is_not_named(self):
+        self.write("m.yaml", DROP.replace("initial: {eccentricity: [0 mm, -0.1 mm]}", "initial: loaded"))
+        out, err = self.freeplay("run", "m.yaml", "--out", "r")
+        self.assertNotIn("no longer", out + err)
 
 
 if __name__ == "__main__":

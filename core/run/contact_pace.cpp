@@ -1,0 +1,94 @@
+#include "run/contact_pace.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "base/index.h"
+#include "component/joint_roles.h"
+#include "system/joint_derivatives.h"
+
+namespace freeplay {
+
+ContactPaces::ContactPaces(RunContext& run) : run_(run) {
+  const std::span<const ForceBlock> blocks = run.system.forces().blocks();
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    const JointLayout& layout = run.system.joints().layout(blocks[f].joint);
+    OfJoint contact{.joint = blocks[f].joint, .block = f};
+    bool any = false;
+    for (std::size_t i = 0; i < layout.events.size; ++i) {
+      const bool begins = event_role(layout, i) == EventRole::contact_begin;
+      contact.speed_field.push_back(begins ? field_index(layout.events[i], "speed") : -1);
+      any = any || begins;
+    }
+    if (any) contacts_.push_back(std::move(contact));
+  }
+}
+
+void ContactPaces::note_begins() {
+  for (const StepEvents::Happening& event : run_.events.happenings()) {
+    const auto contact = std::ranges::find(contacts_, event.joint, &OfJoint::joint);
+    const int field = contact == contacts_.end() ? -1 : contact->speed_field[at(event.event)];
+    if (field >= 0) contact->speed = run_.events.fields(event)[at(field)];
+  }
+}
+
+bool ContactPaces::look(OfJoint& contact, ContactPace& pace) {
+  const Joints& joints = run_.system.joints();
+  const JointLayout& layout = joints.layout(contact.joint);
+  Evaluation& e = run_.e_accepted;
+  const JointInput in = joints.input(contact.joint, point(run_.accepted), e);
+  const std::size_t nz = in.internal.size, columns = 24 + nz, table = (12 + nz) * columns;
+  const Span<double> derivatives(e.derivative_space.data(), table);
+  std::fill(derivatives.begin(), derivatives.end(), 0.0);
+  JointForces out{};
+  out.internal_rate = {e.rate_space.data(), nz};
+  Message message;
+  if (layout.analytic_derivatives != 0) out.derivatives = derivatives;
+  if (!joints.handle(contact.joint).apply(in, out, message)) return false;
+  if (layout.analytic_derivatives == 0 && !difference_forces({joints.handle(contact.joint), layout, run_.system.size(),
+                                                              std::span(e.derivative_space).subspan(table)},
+                                                             in, out, {derivatives.begin(), table}, message)) {
+    return false;
+  }
+  double moved[9], whole[36];
+  if (!run_.solver.mobility(run_.accepted, contact.joint, moved, whole)) return false;
+  double stiffness = 0.0;
+  for (std::size_t i = 0; i < 6; ++i) {
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double* row = &derivatives[(6 + k) * columns];
+      stiffness -= whole[6 * i + k] * row[6 + i];
+      pace.damping -= whole[6 * i + k] * row[18 + i];
+    }
+  }
+  pace.joint = contact.joint;
+  pace.swing = std::sqrt(std::max(stiffness, 0.0));
+  return true;
+}
+
+ContactPace ContactPaces::fastest() {
+  ContactPace most;
+  for (OfJoint& contact : contacts_) {
+    ContactPace pace;
+    if (run_.e_accepted->acts[contact.block] == 0 || !look(contact, pace)) continue;
+    if (pace.damping > most.damping) most = pace;
+  }
+  return most;
+}
+
+std::string ContactPaces::words(const ContactPace& pace) const {
+  const ParameterBlock* block = run_.model.joints[at(pace.joint)].parameters.get();
+  std::string law;
+  if (block != nullptr) {
+    for (const auto& [key, value] : block->values) {
+      if (!value.law || value.law->component->kind != ComponentKind::contact_law) continue;
+      law = fmt::format("law '{}', ", value.law->component->description.name);
+    }
+  }
+  const double speed = std::ranges::find(contacts_, pace.joint, &OfJoint::joint)->speed;
+  return fmt::format("its contact ({}{})", law,
+                     speed < 0.0 ? "on from the start" : fmt::format("begun at {:.2g} m/s", speed));
+}
+
+}  // namespace freeplay
