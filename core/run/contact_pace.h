@@ -20,15 +20,15 @@ struct ContactPace {
 /// Looks at the joints that declare contacts, and knows at which speed each began last.
 class ContactPaces {
  public:
-  explicit ContactPaces(RunContext& run);
+  [[gnu::cold]] explicit ContactPaces(RunContext& run);  // these by size: they run once, or once in 100 000 steps
 
   bool any() const { return !contacts_.empty(); }
   /// After an accepted step: contacts that began in it.
   void note_begins();
   /// The joint in contact that is damped fastest; `joint` is -1 without one.
-  ContactPace fastest();
+  [[gnu::cold]] ContactPace fastest();
   /// "its contact (law 'NAME', begun at ... m/s)".
-  std::string words(const ContactPace& pace) const;
+  [[gnu::cold]] std::string words(const ContactPace& pace) const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -42,7 +42,7 @@ class ContactPaces {
     std::vector<int> speed_field{};  // by event; -1 where it begins no contact
     double speed = -1.0;             // at which its last contact began; below 0: none has
   };
-  bool look(OfJoint& contact, ContactPace& pace);
+  [[gnu::cold]] bool look(OfJoint& contact, ContactPace& pace);
 
   RunContext& run_;
   std::vector<OfJoint> contacts_;

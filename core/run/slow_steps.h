@@ -30,9 +30,9 @@ class SlowSteps {
 
   /// A sentence about the run, once.
   bool has_notice() const { return !noticed_ && !sentence_.empty(); }
-  std::string take_notice();
+  [[gnu::cold]] std::string take_notice();
   /// Once the run is over.
-  void add_doubt();
+  [[gnu::cold]] void add_doubt();
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -43,15 +43,16 @@ class SlowSteps {
  private:
   static constexpr long block = 100'000, watched = 16;
 
-  void watch();
-  void judge_contacts(double all);
-  bool judge();
+  // By size: they run in 16 of 100 000 steps.
+  [[gnu::cold]] void watch();
+  [[gnu::cold]] void judge_contacts(double all);
+  [[gnu::cold]] bool judge();
   struct Blame {
     std::string element, words;
   };
-  Blame blame() const;
-  double change_of(std::size_t load) const;
-  std::string name_of(std::size_t load) const;
+  [[gnu::cold]] Blame blame() const;
+  [[gnu::cold]] double change_of(std::size_t load) const;
+  [[gnu::cold]] std::string name_of(std::size_t load) const;
 
   RunContext& run_;
   RunFailure& failure_;

@@ -142,7 +142,7 @@ TEST(DriverTable, RefusesRowsWithMoreFieldsThanTheHeader) {
 TEST(DriverTable, NeedsAHeaderOfNames) {
   EXPECT_EQ(places_in("# bench\n0,7\n1,1\n2,3\n"), "2:1 bad-table ");
   EXPECT_EQ(places_in("t, 7\n1,1\n2,3\n"), "1:4 bad-table ");
-  EXPECT_EQ(places_in("t,7\n1,1\n2,3\n", ", value: 7"), "");  // a name that was asked for
+  EXPECT_EQ(places_in("t,7\n0,1\n2,3\n", ", value: 7"), "");  // a name that was asked for
 }
 
 TEST(DriverTable, RefusesTwoColumnsOfOneName) {
