@@ -145,12 +145,14 @@ void expect_same_end(const Result& whole, const Saved& from, const Result& rest,
 }
 
 /// From one saved state to the next one.
-void expect_same_stretch(const Result& whole, const Saved& from, const Saved& to, const Result& rest, std::size_t columns) {
+void expect_same_stretch(const Result& whole, const Saved& from, const Saved& to, const Result& rest,
+                         std::size_t columns) {
   const std::size_t begin = static_cast<std::size_t>(from.state.rows) * columns;
   const std::size_t end = static_cast<std::size_t>(to.state.rows) * columns;
   ASSERT_LE(end, whole.numbers.size());
   ASSERT_LE(end - begin, rest.numbers.size());
-  EXPECT_TRUE(same_bits(std::span(whole.numbers).subspan(begin, end - begin), std::span(rest.numbers).first(end - begin)));
+  EXPECT_TRUE(
+      same_bits(std::span(whole.numbers).subspan(begin, end - begin), std::span(rest.numbers).first(end - begin)));
   EXPECT_EQ(to.events - from.events, rest.events.size());
   EXPECT_TRUE(to.state == rest.end) << "state at the next";
 }
@@ -225,7 +227,7 @@ TEST_P(ResumedModel, EndsBitForBitWithEveryIntegratorLong) {
       SCOPED_TRACE(::testing::PrintToString(what));
       try {
         resume_everywhere(what, Until::next);  // each state is reached again from the one before: together, to the end
-      } catch (const Error& error) {  // as of steps that an integrator does not take
+      } catch (const Error& error) {           // as of steps that an integrator does not take
         EXPECT_EQ(error.category(), Error::Category::input) << error.what();
       }
     }
