@@ -19,15 +19,15 @@ namespace freeplay {
 namespace {
 
 namespace fs = std::filesystem;
-using Words = std::vector<std::string>;
+using WordList = std::vector<std::string>;
 
-const Words any_file, model_endings{".yaml", ".yml", ".urdf", ".sdf", ".xml"};
+const WordList any_file, model_endings{".yaml", ".yml", ".urdf", ".sdf", ".xml"};
 
 /// The command that is being typed, as far as it is there.
 struct Line {
   const CLI::App* command;
   const CLI::Option* open = nullptr;  ///< waits for its value
-  Words arguments{};                  ///< words that belong to no option
+  WordList arguments{};               ///< words that belong to no option
 };
 
 bool takes_value(const CLI::Option& option) { return option.get_items_expected_max() > 0; }
@@ -37,7 +37,7 @@ const CLI::Option* option_of(const CLI::App& command, const std::string& name) {
   return option != nullptr && option->nonpositional() ? option : nullptr;
 }
 
-Line line_of(const CLI::App& program, const Words& words) {
+Line line_of(const CLI::App& program, const WordList& words) {
   Line line{&program};
   for (std::size_t i = 0; i + 1 < words.size(); ++i) {
     const std::string& word = words[i];
@@ -69,14 +69,14 @@ const CLI::Option* next_argument(const Line& line) {
 }
 
 /// The words of a help such as "Of the results: csv, hdf5, both (both)" or "model (the default) or plugin".
-Words named_values(std::string_view help) {
+WordList named_values(std::string_view help) {
   if (const auto colon = help.rfind(": "); colon != help.npos) help.remove_prefix(colon + 2);
   help = help.substr(0, help.find(';'));
   std::string list(help);
   for (const std::string_view divider : {", ", " or "}) {
     for (auto at = list.find(divider); at != list.npos; at = list.find(divider)) list.replace(at, divider.size(), "\n");
   }
-  Words values;
+  WordList values;
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t end = std::min(list.find('\n', from), list.size());
     std::string word = list.substr(from, end - from);
@@ -85,18 +85,18 @@ Words named_values(std::string_view help) {
     values.push_back(std::move(word));
     from = end + 1;
   }
-  return values.size() > 1 ? values : Words();
+  return values.size() > 1 ? values : WordList();
 }
 
 /// Files with one of the endings, and folders, that begin with `begun`, as it is typed.
-Words files(const std::string& begun, const Words& endings) {
+WordList files(const std::string& begun, const WordList& endings) {
   const std::size_t slash = begun.rfind('/');
   const std::string folder = slash == begun.npos ? "" : begun.substr(0, slash + 1), name = begun.substr(folder.size());
   const char* home = std::getenv("HOME");
   const fs::path there = folder.empty()                                ? fs::path(".")
                          : folder.starts_with("~/") && home != nullptr ? fs::path(home) / folder.substr(2)
                                                                        : fs::path(folder);
-  Words found;
+  WordList found;
   std::error_code error, ignored;
   for (fs::directory_iterator it(there, error), end; !error && it != end; it.increment(error)) {
     const std::string file = it->path().filename().string();
@@ -110,8 +110,8 @@ Words files(const std::string& begun, const Words& endings) {
   return found;
 }
 
-Words types(const std::string& kind) {
-  Words names;
+WordList types(const std::string& kind) {
+  WordList names;
   for (const Json& entry : type_entries(load_registry({}, nullptr), kind)) {
     if (kind == "plugins" || entry.value("kind", "") != "plugin") names.push_back(entry.value("name", ""));
   }
@@ -131,9 +131,9 @@ std::optional<LoadedModel> model_of(const Line& line) {
   return std::nullopt;
 }
 
-Words names_of_model(const Line& line, const std::string& kind) {
+WordList names_of_model(const Line& line, const std::string& kind) {
   const std::optional<LoadedModel> loaded = model_of(line);
-  Words names;
+  WordList names;
   if (kind == "JOINT") {
     if (loaded) {
       for (const JointElement& joint : loaded->model->joints) {
@@ -151,8 +151,8 @@ Words names_of_model(const Line& line, const std::string& kind) {
 }
 
 /// Values of an option or argument, by what stands for it in the help.
-Words values_of(const Line& line, const CLI::Option& option, const std::string& begun) {
-  if (Words named = named_values(option.get_description()); !named.empty()) return named;
+WordList values_of(const Line& line, const CLI::Option& option, const std::string& begun) {
+  if (WordList named = named_values(option.get_description()); !named.empty()) return named;
   const std::string kind = option.nonpositional() ? option.get_type_name() : option.get_name();
   if (option.get_name() == "--integrator") return types("integrators");
   if (kind == "NAME" && !option.nonpositional() && line.command->get_name() == "describe") return types("");
@@ -161,17 +161,17 @@ Words values_of(const Line& line, const CLI::Option& option, const std::string& 
   }
   if (kind == "MODEL" || kind == "IN" || kind == "FILE|DIR") return files(begun, model_endings);
   if (kind == "LIB") {
-    Words found = files(begun, {".so"});
+    WordList found = files(begun, {".so"});
     std::ranges::move(types("plugins"), std::back_inserter(found));
     return found;
   }
   const bool is_file =
       kind == "FILE" || kind == "DIR" || kind == "RESULT" || kind == "OUT" || kind == "A" || kind == "B";
-  return is_file ? files(begun, any_file) : Words();
+  return is_file ? files(begun, any_file) : WordList();
 }
 
-Words options_of(const CLI::App& command) {
-  Words names;
+WordList options_of(const CLI::App& command) {
+  WordList names;
   for (const CLI::Option* option : command.get_options()) {
     if (option->get_group().empty()) continue;  // hidden
     for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
@@ -179,17 +179,17 @@ Words options_of(const CLI::App& command) {
   return names;
 }
 
-Words candidates(const Line& line, const std::string& begun) {
+WordList candidates(const Line& line, const std::string& begun) {
   if (line.open != nullptr) return values_of(line, *line.open, begun);
   const std::size_t equals = begun.find('=');
   if (begun.starts_with("--") && equals != begun.npos) {
     const CLI::Option* option = option_of(*line.command, begun.substr(0, equals));
-    Words values = option == nullptr ? Words() : values_of(line, *option, begun.substr(equals + 1));
+    WordList values = option == nullptr ? WordList() : values_of(line, *option, begun.substr(equals + 1));
     for (std::string& value : values) value.insert(0, begun.substr(0, equals + 1));
     return values;
   }
   if (begun.starts_with('-')) return options_of(*line.command);
-  Words words;
+  WordList words;
   if (line.arguments.empty()) {
     for (const CLI::App* command : line.command->get_subcommands(nullptr)) words.push_back(command->get_name());
   }
@@ -203,7 +203,7 @@ Words candidates(const Line& line, const std::string& begun) {
 
 std::vector<std::string> completions(const CLI::App& program, const std::vector<std::string>& words) {
   const std::string begun = words.empty() ? std::string() : words.back();
-  Words found;
+  WordList found;
   try {
     found = candidates(line_of(program, words), begun);
   } catch (const std::exception&) {

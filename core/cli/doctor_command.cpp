@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Finding {
+struct DoctorLine {
   const char* verdict;  ///< ok, note, problem
   std::string part, text;
 };
@@ -33,7 +33,7 @@ class Doctor {
  public:
   explicit Doctor(const CommonOptions& common) : common_(common) {}
 
-  std::vector<Finding> examine() {
+  std::vector<DoctorLine> examine() {
     add("ok", "program",
         fmt::format("freeplay {} (schema {}, plugin ABI {}), {}, {}", program_version, schema_version, abi_version,
                     compiler, FREEPLAY_BUILD));
@@ -143,19 +143,19 @@ class Doctor {
 
   const CommonOptions& common_;
   Registry registry_;
-  std::vector<Finding> findings_;
+  std::vector<DoctorLine> findings_;
 };
 
 int examine(const CommonOptions& common) {
-  const std::vector<Finding> findings = Doctor(common).examine();
-  const auto is_problem = [](const Finding& finding) { return std::string_view(finding.verdict) == "problem"; };
+  const std::vector<DoctorLine> findings = Doctor(common).examine();
+  const auto is_problem = [](const DoctorLine& finding) { return std::string_view(finding.verdict) == "problem"; };
   const bool sound = std::ranges::none_of(findings, is_problem);
   if (common.json) {
     Json list = Json::array();
-    for (const Finding& f : findings) list.push_back({{"verdict", f.verdict}, {"part", f.part}, {"text", f.text}});
+    for (const DoctorLine& f : findings) list.push_back({{"verdict", f.verdict}, {"part", f.part}, {"text", f.text}});
     print_json({{"ok", sound}, {"findings", list}});
   } else {
-    for (const Finding& f : findings) {
+    for (const DoctorLine& f : findings) {
       if (!common.quiet || is_problem(f)) print(fmt::format("{:<8} {}: {}\n", f.verdict, f.part, f.text));
     }
   }

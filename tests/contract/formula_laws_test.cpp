@@ -66,13 +66,13 @@ struct Friction {
   FrictionLawRef ref, twin;
 };
 
-const Conditions conditions{.seed = 1, .allocations = &allocations};
+const Conditions formula_conditions{.seed = 1, .allocations = &allocations};
 
 class FormulaContactLaw : public testing::TestWithParam<const char*> {};
 TEST_P(FormulaContactLaw, KeepsTheContract) {
   const Contact law(Texts{{"force", GetParam()}});
   ASSERT_EQ(law.fault.text, "");
-  const Findings findings = check_contact_law({law.ref, law.twin, 1e-4, true}, conditions);
+  const Findings findings = check_contact_law({law.ref, law.twin, 1e-4, true}, formula_conditions);
   EXPECT_TRUE(findings.held()) << broken_rules(findings);
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FormulaContactLaw,
@@ -86,7 +86,7 @@ class FormulaFrictionLaw : public testing::TestWithParam<const char*> {};
 TEST_P(FormulaFrictionLaw, KeepsTheContract) {
   const Friction law(Texts{{"coefficient", GetParam()}});
   ASSERT_EQ(law.fault.text, "");
-  const Findings findings = check_friction_law({law.ref, law.twin}, conditions);
+  const Findings findings = check_friction_law({law.ref, law.twin}, formula_conditions);
   EXPECT_TRUE(findings.held()) << broken_rules(findings);
 }
 INSTANTIATE_TEST_SUITE_P(Laws, FormulaFrictionLaw,

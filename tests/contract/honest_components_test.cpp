@@ -7,11 +7,12 @@
 #include "contract/component_contract.h"
 #include "contract/rules.h"
 #include "findings_text.h"
+#include "type_name.h"
 
 namespace freeplay::test {
 namespace {
 
-const Registry& registry() {
+const Registry& honest_types() {
   static const Registry all = honest_registry();
   return all;
 }
@@ -20,7 +21,7 @@ class HonestComponentLong : public testing::TestWithParam<const Component*> {};
 
 TEST_P(HonestComponentLong, BreaksNoRule) {
   for (const std::uint64_t seed : {1u, 2u, 3u}) {
-    const Findings findings = check_component(*GetParam(), registry(), {.seed = seed, .allocations = &allocations});
+    const Findings findings = check_component(*GetParam(), honest_types(), {.seed = seed, .allocations = &allocations});
     EXPECT_GT(findings.all().size(), 8u);
     EXPECT_TRUE(findings.held()) << "seed " << seed << "\n" << broken_rules(findings);
     for (const Finding& finding : findings.all()) {
@@ -31,21 +32,13 @@ TEST_P(HonestComponentLong, BreaksNoRule) {
 
 std::vector<const Component*> honest() {
   std::vector<const Component*> found;
-  for (const RegisteredComponent& entry : registry().components()) {
+  for (const RegisteredComponent& entry : honest_types().components()) {
     if (entry.library == "honest") found.push_back(entry.component);
   }
   return found;
 }
 
-std::string test_name(const testing::TestParamInfo<const Component*>& info) {
-  std::string name = info.param->description.name;
-  for (char& c : name) {
-    if (c == '-') c = '_';
-  }
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Every, HonestComponentLong, testing::ValuesIn(honest()), test_name);
+INSTANTIATE_TEST_SUITE_P(Every, HonestComponentLong, testing::ValuesIn(honest()), type_name);
 
 TEST(Rules, OfAnotherKindAreNotExplained) {
   EXPECT_TRUE(rule_meaning(ComponentKind::joint, "monotone").empty());

@@ -13,11 +13,11 @@
 namespace freeplay::test {
 namespace {
 
-const Conditions conditions{.seed = 3, .allocations = &allocations};
+const Conditions joint_conditions{.seed = 3, .allocations = &allocations};
 
 template <class J>
 Findings judge(const J& joint, const J& twin) {
-  return check_joint({handle(joint), handle(twin), Space::planar, true}, conditions);
+  return check_joint({handle(joint), handle(twin), Space::planar, true}, joint_conditions);
 }
 
 /// In space: the x axis of a stands at a right angle to the y axis of b, Phi = x_a.y_b.
@@ -42,7 +42,7 @@ class Square final : public Joint {
 TEST(JointContract, JudgesMotionInSpace) {
   const Square sound, flat(0.0);
   const auto findings = [](const Square& joint) {
-    return check_joint({handle(joint), handle(joint), Space::spatial, true}, conditions);
+    return check_joint({handle(joint), handle(joint), Space::spatial, true}, joint_conditions);
   };
   EXPECT_TRUE(findings(sound).held()) << broken_rules(findings(sound));
   EXPECT_TRUE(findings(flat).broken("gamma")) << broken_rules(findings(flat));
@@ -165,9 +165,9 @@ TEST(JointContract, FindsHiddenState) {
 }
 
 /// A torsional spring that yields at a tenth of a radian when a step is accepted, and says so in part.
-class Yielding final : public Joint {
+class Settling final : public Joint {
  public:
-  explicit Yielding(double said) : said_(said) {}
+  explicit Settling(double said) : said_(said) {}
   void declare(JointLayout& layout) const override {
     layout.time_scale = unbounded;
     layout.coordinate = Coordinate::angle;
@@ -192,7 +192,7 @@ class Yielding final : public Joint {
 };
 
 TEST(JointContract, FindsWhatCommitLosesInSilence) {
-  const Yielding sound(1.0), silent(0.0), wild(std::numeric_limits<double>::quiet_NaN());
+  const Settling sound(1.0), silent(0.0), wild(std::numeric_limits<double>::quiet_NaN());
   EXPECT_TRUE(judge(sound, sound).held()) << broken_rules(judge(sound, sound));
   EXPECT_TRUE(judge(silent, silent).broken("history-loss")) << broken_rules(judge(silent, silent));
   EXPECT_TRUE(judge(wild, wild).broken("finite")) << broken_rules(judge(wild, wild));
@@ -276,7 +276,7 @@ TEST(JointContract, FindsChannelsAndEventsThatAreNotWhatTheirRolesSay) {
 
 TEST(JointContract, LetsDrivenJointsBringEnergy) {
   const Cage cage(Flaw::negative_damping);
-  const Findings findings = check_joint({handle(cage), handle(cage), Space::planar, false}, conditions);
+  const Findings findings = check_joint({handle(cage), handle(cage), Space::planar, false}, joint_conditions);
   EXPECT_FALSE(findings.broken("energy"));
   EXPECT_FALSE(findings.broken("energy-cycle"));
 }

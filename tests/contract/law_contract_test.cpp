@@ -16,7 +16,7 @@
 namespace freeplay::test {
 namespace {
 
-const Conditions conditions{.seed = 1, .allocations = &allocations};
+const Conditions law_conditions{.seed = 1, .allocations = &allocations};
 
 /// A law made of a function.
 struct Normal final : ContactLaw {
@@ -25,7 +25,7 @@ struct Normal final : ContactLaw {
   ContactForce evaluate(const ContactState& s) const override { return function(s); }
   Function function;
 };
-ContactLawRef handle(const Normal& law) { return {abi::contact_law_table<Normal>, &law}; }
+ContactLawRef ref_of(const Normal& law) { return {abi::contact_law_table<Normal>, &law}; }
 
 /// F = max(0, K delta^2 (1 + delta'/(2 v_0)))
 ContactForce sound(const ContactState& s) {
@@ -39,7 +39,7 @@ ContactForce sound(const ContactState& s) {
 
 Findings judge(const Normal::Function& function, bool may_jump = false) {
   const Normal law(function);
-  return check_contact_law({handle(law), handle(law), 1e-4, may_jump}, conditions);
+  return check_contact_law({ref_of(law), ref_of(law), 1e-4, may_jump}, law_conditions);
 }
 void expect_found(const char* rule, const Normal::Function& function) {
   const Findings findings = judge(function);
@@ -130,7 +130,7 @@ TEST(ContactLawContract, FindsHiddenStateAndTwinsThatDiffer) {
   const auto calls = std::make_shared<int>(0);
   expect_found("no-hidden-state", with([calls](ContactForce& f, const ContactState&) { f.normal += 1e-9 * ++*calls; }));
   const Normal law(sound), other(with([](ContactForce&f, const ContactState&) { f.d_rate += 1e-12; }));
-  EXPECT_TRUE(check_contact_law({handle(law), handle(other), 1e-4, false}, conditions).broken("same-twin"));
+  EXPECT_TRUE(check_contact_law({ref_of(law), ref_of(other), 1e-4, false}, law_conditions).broken("same-twin"));
 }
 
 TEST(ContactLawContract, FindsWrongCalls) {
@@ -151,7 +151,7 @@ struct Tangential final : FrictionLaw {
   Function function;
   int count;
 };
-FrictionLawRef handle(const Tangential& law) { return {abi::friction_law_table<Tangential>, &law}; }
+FrictionLawRef ref_of(const Tangential& law) { return {abi::friction_law_table<Tangential>, &law}; }
 
 /// -F_N atan(v/v_s)/4
 FrictionForce smooth(const FrictionState& s, Span<double>) {
@@ -166,7 +166,7 @@ FrictionForce bristle(const FrictionState& s, Span<double> rate) {
 
 Findings judge(const Tangential::Function& function, int variables = 0) {
   const Tangential law(function, variables);
-  return check_friction_law({handle(law), handle(law)}, conditions);
+  return check_friction_law({ref_of(law), ref_of(law)}, law_conditions);
 }
 void expect_slip_found(const char* rule, const std::function<void(FrictionForce&, const FrictionState&)>& change) {
   const Findings findings = judge([change](const FrictionState& s, Span<double> rate) {
@@ -226,7 +226,7 @@ TEST(FrictionLawContract, FindsHiddenStateAndTwinsThatDiffer) {
     *last = s.slip_speed;
   });
   const Tangential law(smooth, 0), other([](const FrictionState&, Span<double>) { return FrictionForce{}; }, 0);
-  EXPECT_TRUE(check_friction_law({handle(law), handle(other)}, conditions).broken("same-twin"));
+  EXPECT_TRUE(check_friction_law({ref_of(law), ref_of(other)}, law_conditions).broken("same-twin"));
 }
 
 /// bristle(), whose memory starts and is reset and stores as the members say.
@@ -250,7 +250,7 @@ Findings judge_memory(const std::function<void(Remembering&)>& change) {
   Remembering law;
   change(law);
   const FrictionLawRef given{abi::friction_law_table<Remembering>, &law};
-  return check_friction_law({given, given}, conditions);
+  return check_friction_law({given, given}, law_conditions);
 }
 
 TEST(FrictionLawContract, HoldsForSoundMemory) {

@@ -8,6 +8,7 @@
 #include "component/registry.h"
 #include "contract/component_contract.h"
 #include "contract/rules.h"
+#include "type_name.h"
 
 namespace freeplay::test {
 namespace {
@@ -60,21 +61,13 @@ std::vector<const Component*> of_kind(ComponentKind kind) {
   return found;
 }
 
-std::string test_name(const testing::TestParamInfo<const Component*>& info) {
-  std::string name = info.param->description.name;
-  for (char& c : name) {
-    if (c == '-') c = '_';
-  }
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(Joint, ComponentContract, testing::ValuesIn(of_kind(ComponentKind::joint)), test_name);
+INSTANTIATE_TEST_SUITE_P(Joint, ComponentContract, testing::ValuesIn(of_kind(ComponentKind::joint)), type_name);
 INSTANTIATE_TEST_SUITE_P(ContactLaw, ComponentContract, testing::ValuesIn(of_kind(ComponentKind::contact_law)),
-                         test_name);
+                         type_name);
 INSTANTIATE_TEST_SUITE_P(FrictionLaw, ComponentContract, testing::ValuesIn(of_kind(ComponentKind::friction_law)),
-                         test_name);
+                         type_name);
 INSTANTIATE_TEST_SUITE_P(Integrator, ComponentContract, testing::ValuesIn(of_kind(ComponentKind::integrator)),
-                         test_name);
+                         type_name);
 
 }  // namespace
 }  // namespace freeplay::test
