@@ -97,6 +97,7 @@ void check_joint_type(const Component& component, const Registry& registry, cons
     const ParameterSamples samples = sample_parameters(component, registry, conditions, space);
     findings.expect("accepts-parameters", !samples.accepted.empty(), [&] { return where + ": " + samples.refusal; });
     for (const ParameterSample& sample : samples.accepted) {
+      if (sample.other_laws && !conditions.other_laws) continue;
       say(conditions, fmt::format("{}, {}", sample.name, where));
       findings.merge(check_joint_sample(sample, space, conditions), fmt::format("{}: {}", case_words(sample), where));
     }

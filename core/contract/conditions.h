@@ -16,6 +16,7 @@ struct Conditions {
   AllocationCount allocations = nullptr;  ///< null: allocations are not watched
   CallNote* note = nullptr;               ///< where each call is noted; null: nowhere
   FindingSink found = {};                 ///< receives findings as they are made; may be empty
+  bool other_laws = true;                 ///< joints with each law of the registry, not with the first alone
 };
 
 /// A call of a component's function, from construction to end(): noted, and its allocations counted.

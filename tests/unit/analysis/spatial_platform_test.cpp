@@ -182,7 +182,7 @@ TEST(SpatialPlatform, ErrorsOfAStewartPlatformAreThoseOfItsLegLengths) {
     for (const Six& pose : poses()) {
       const auto error = clearance_error(bench.mechanism, whole_map(bench, bench.reach(at(pose))));
       ASSERT_TRUE(error);
-      const Eigen::Matrix<double, 6, 6> inverse = stewart.jacobian(pose).inverse();
+      const MatrixXd inverse = MatrixXd(stewart.jacobian(pose)).inverse();
       Six widths;
       for (std::size_t k = 0; k < 6; ++k) widths[static_cast<Eigen::Index>(k)] = stewart.play[k] + stewart.backlash;
       for (Eigen::Index i = 0; i < 6; ++i) {
@@ -233,7 +233,7 @@ TEST(SpatialPlatformLong, SamplesStayWithinTheBoundAndComeNearIt) {
   // Balls drawn here and the formula of the legs: never beyond, and with all play along the legs nearly there.
   std::mt19937_64 engine(3);
   const auto uniform = [&] { return 2.0 * static_cast<double>(engine() >> 11) * 0x1.0p-53 - 1.0; };
-  const Eigen::Matrix<double, 6, 6> inverse = stewart.jacobian(poses()[1]).inverse();
+  const MatrixXd inverse = MatrixXd(stewart.jacobian(poses()[1])).inverse();
   Six most = Six::Zero();
   for (int i = 0; i < 300'000; ++i) {
     Six d;
@@ -261,7 +261,7 @@ TEST(SpatialPlatform, FirstOrderAgreesWithLegsThatAreChanged) {
   const Stewart stewart;
   Bench bench(stewart.model());
   const Six& pose = poses()[2];
-  const Eigen::Matrix<double, 6, 6> inverse = stewart.jacobian(pose).inverse();
+  const MatrixXd inverse = MatrixXd(stewart.jacobian(pose)).inverse();
   const VelocityMap map = whole_map(bench, bench.reach(at(pose)));
   const MatrixXd by_input = map.a.inverse() * map.b;
   EXPECT_LT((by_input - inverse).norm(), 1e-9 * inverse.norm());
