@@ -19,7 +19,7 @@ constexpr const char* loose_pin =
 using Set = std::vector<std::pair<std::string, std::string>>;
 
 /// "message | hint" of the refusal.
-std::string refusal_of(const BuildOptions& options) {
+std::string refused_override(const BuildOptions& options) {
   try {
     return "said " + said_of(loose_pin, options);
   } catch (const Error& error) {
@@ -52,15 +52,15 @@ TEST(RunOverride, MistakesAreRefused) {
   for (const auto& c : cases) {
     BuildOptions options;
     options.set = {{c.name, c.text}};
-    EXPECT_EQ(refusal_of(options), c.said) << c.name;
+    EXPECT_EQ(refused_override(options), c.said) << c.name;
   }
   BuildOptions options;
   options.end = 0.0;
-  EXPECT_EQ(refusal_of(options), "--end 0 must be greater than the start, 0 s");
+  EXPECT_EQ(refused_override(options), "--end 0 must be greater than the start, 0 s");
   options.end.reset(), options.step = 0.0;
-  EXPECT_EQ(refusal_of(options), "--step 0 must be > 0");
+  EXPECT_EQ(refused_override(options), "--step 0 must be > 0");
   options.step.reset(), options.interval = 1e-18;
-  EXPECT_EQ(refusal_of(options),
+  EXPECT_EQ(refused_override(options),
             "--interval: 1e-18 s between rows is less than times of 1 s can differ by; it must be at least 4.4e-16 s");
 }
 

@@ -4,7 +4,7 @@
 namespace freeplay {
 namespace {
 
-const std::string pendulum =
+const std::string swinging_rod =
     "freeplay: 1\n"
     "bodies:\n"
     "  rod: {mass: 1, inertia: 1, frames: {tip: [1, 0]}}\n"
@@ -128,9 +128,9 @@ constexpr Answer of_conditions[] = {
 };
 
 TEST(Answers, ToRuns) {
-  expect_answers(pendulum + "@\n", of_runs);
-  expect_answers(pendulum + "{end: 1, step: 1 ms, output: @}\n", of_outputs);
-  expect_answers(pendulum + "{end: 1, step: 1 ms, stop: @}\n", of_conditions);
+  expect_answers(swinging_rod + "@\n", of_runs);
+  expect_answers(swinging_rod + "{end: 1, step: 1 ms, output: @}\n", of_outputs);
+  expect_answers(swinging_rod + "{end: 1, step: 1 ms, stop: @}\n", of_conditions);
 }
 
 const std::string arms =

@@ -4,7 +4,7 @@
 namespace freeplay {
 namespace {
 
-const std::string ball =
+const std::string studied_ball =
     "freeplay: 1\n"
     "parameters: {g: 9.81 m/s^2, v: 0 m/s}\n"
     "gravity: [0, -$g]\n"
@@ -134,8 +134,8 @@ constexpr Answer of_fits[] = {
 };
 
 TEST(Answers, ToAxesOfStudies) {
-  expect_answers(ball + "study: {axes: {a: @}, " + sampled + "}\n", of_axes);
-  expect_answers(ball + "study: {axes: {a: @}, " + sampled + "}\n", of_fits);
+  expect_answers(studied_ball + "study: {axes: {a: @}, " + sampled + "}\n", of_axes);
+  expect_answers(studied_ball + "study: {axes: {a: @}, " + sampled + "}\n", of_fits);
 }
 
 constexpr Answer of_studies[] = {
@@ -231,8 +231,8 @@ constexpr Answer of_ended_samples[] = {
 };
 
 TEST(Answers, ToStudies) {
-  expect_answers(ball + "study: {@}\n", of_studies);
-  expect_answers(ball + "study: {@}\n", of_ended_samples);
+  expect_answers(studied_ball + "study: {@}\n", of_studies);
+  expect_answers(studied_ball + "study: {@}\n", of_ended_samples);
 }
 
 constexpr Answer of_stops[] = {
@@ -295,9 +295,9 @@ constexpr Answer of_plots[] = {
 };
 
 TEST(Answers, ToStopsAndPlotsOfStudies) {
-  expect_answers(ball + "study: {axes: {g: {uniform: [1, 2]}}, " + sampled + ", " + highest + "}, stop: @}\n",
+  expect_answers(studied_ball + "study: {axes: {g: {uniform: [1, 2]}}, " + sampled + ", " + highest + "}, stop: @}\n",
                  of_stops);
-  expect_answers(ball + "study: {axes: {g: [1]}, " + highest +
+  expect_answers(studied_ball + "study: {axes: {g: [1]}, " + highest +
                      ", z: {channel: body.ball.y, reduce: poincare, every: 1 s}}, plots: {p: @}}\n",
                  of_plots);
 }

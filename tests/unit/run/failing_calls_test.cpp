@@ -199,7 +199,7 @@ std::string failure_of(const Trap& set, const std::string& simulation) {
   }
 }
 
-constexpr const char* settings[] = {
+constexpr const char* runs_of_guide[] = {
     "step: 1 ms",
     "step: 1 ms, output: {interval: 7 ms, rows_in_contact: 20, discard: 0.2 s}",
     "accuracy: 1 um, output: {interval: 7 ms}",
@@ -210,7 +210,7 @@ constexpr const char* settings[] = {
 // A step that could not be made is tried again, so that a joint which fails once is not noticed there. What it fails at
 // for good is noticed, but for what only looks back or ahead: the last calls of all.
 TEST(FailedRun, AJointThatGivesUpAtAnyCallIsNamedAndEndsIt) {
-  for (const char* simulation : settings) {
+  for (const char* simulation : runs_of_guide) {
     for (int c = 0; c < static_cast<int>(std::size(call_names)); ++c) {
       const Call call = static_cast<Call>(c);
       ASSERT_EQ(failure_of({call}, simulation), "") << simulation;

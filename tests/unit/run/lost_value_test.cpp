@@ -22,13 +22,13 @@ std::string falling_rod(const std::string& sections, const std::string& simulati
          sections + "\nsimulation: {end: 0.4, " + simulation + "}\n";
 }
 
-struct Loss {
+struct LostValue {
   const char *sections, *said;
   double time;  ///< [s]; NaN: when the motion comes there
 };
 constexpr double by_motion = std::numeric_limits<double>::quiet_NaN();
 
-constexpr Loss losses[] = {
+constexpr LostValue lost_values[] = {
     {"forces: {w: {type: force, at: rod/tip, value: [sqrt(0.25 - t), 0]}}",
      "force 'w': square root of a negative number [bad-expression]", 0.25},
     {"forces: {w: {type: force, at: rod/tip, value: [abs(t - 0.25) + sqrt(0.25 - t), 0]}}",
@@ -62,7 +62,7 @@ constexpr Loss losses[] = {
 
 // A force is asked at the stages of a step, of which one that has no value is named; a driver is looked for.
 TEST(FailedRun, AFormulaThatLosesItsValueIsNamedWithTheTime) {
-  for (const Loss& loss : losses) {
+  for (const LostValue& loss : lost_values) {
     for (const char* simulation : {"step: 1 ms", "accuracy: 1 um", "step: 1 ms, integrator: dopri5"}) {
       SCOPED_TRACE(std::string(loss.sections) + "; " + simulation);
       const ModelRun run(falling_rod(loss.sections, simulation));
