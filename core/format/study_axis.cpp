@@ -52,9 +52,9 @@ class AxisReader {
     MapReader map(axis_.entry, "study axis");
     const auto target = map.find("target"), each = map.find("each"), present = map.find("where_present");
     bool good = !map.conflict("target", "each");
-    if (target) axis_.target = target->string().value_or("");
+    if (target) axis_.target = named(*target);
     if (each) {
-      axis_.target = each->string().value_or("");
+      axis_.target = named(*each);
       axis_.each = true;
     }
     if ((target || each) && axis_.target.empty()) good = false;
@@ -64,6 +64,12 @@ class AxisReader {
     if (target || each || !axis_.cases.empty()) Draft::check_name(axis_.entry);
     map.finish();
     return good;
+  }
+
+  static std::string named(const CheckedValue& value) {
+    const auto text = value.string();
+    if (text && text->empty()) value.fail("wrong-type", fmt::format("'{}' must not be empty", value.path()));
+    return text.value_or("");
   }
 
   bool read_form(MapReader& map) {

@@ -12,7 +12,7 @@ import sys
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FOLDERS = ("core", "joints", "contact", "solvers")
-PROGRAMS = ("freeplay", "tests/unit_tests", "tests/contract_tests", "tests/validation_tests", "tests/threads_tests")
+PROGRAMS = ("freeplay", "tests/unit_tests", "tests/validation_tests", "tests/threads_tests")
 
 
 def printed(*command):

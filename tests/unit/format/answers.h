@@ -16,8 +16,9 @@ struct Answer {
 };
 
 /// All that is said of a text when it is read and checked.
-inline std::string said_of(const std::string& text, const BuildOptions& options = {}) {
-  const LoadedModel loaded = load_text(text, "m.yaml", options, test::builtin_types());
+inline std::string said_of(const std::string& text, const BuildOptions& options = {},
+                           const std::string& file = "m.yaml") {
+  const LoadedModel loaded = load_text(text, file, options, test::builtin_types());
   std::string said;
   for (const Diagnostic& d : loaded.diagnostics.sorted()) {
     if (!said.empty()) said += '\n';

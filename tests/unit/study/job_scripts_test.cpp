@@ -20,7 +20,7 @@ JobRequest request_of(std::uint64_t points, double seconds) {
   return request;
 }
 
-std::string text_of(const std::filesystem::path& file) {
+std::string script_text(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::ostringstream text;
   text << in.rdbuf();
@@ -61,7 +61,7 @@ TEST(JobScripts, WordsOfScriptsAreQuoted) {
   JobRequest request = request_of(100, 60.0);
   const JobScripts made = write_job_scripts(request, plan_jobs(request));
   ASSERT_EQ(3u, made.files.size());
-  const std::string array = text_of(made.files[0]);
+  const std::string array = script_text(made.files[0]);
   EXPECT_NE(std::string::npos, array.find("#SBATCH --array=1-4\n")) << array;
   EXPECT_NE(std::string::npos, array.find("#SBATCH --job-name=crank---rod\n")) << array;
   EXPECT_NE(std::string::npos, array.find("exec '/opt/free play/freeplay' study run '")) << array;
@@ -72,7 +72,7 @@ TEST(JobScripts, SignsThatEnginesFillInStayAsTheyAre) {
   JobRequest request = request_of(100, 60.0);
   request.folder = request.folder.parent_path() / "50 %a of {x}";
   EXPECT_NE(std::string::npos,
-            text_of(write_job_scripts(request, plan_jobs(request)).files[0]).find("50 %%a of {x}/jobs/%A_%a.log'"));
+            script_text(write_job_scripts(request, plan_jobs(request)).files[0]).find("50 %%a of {x}/jobs/%A_%a.log'"));
   request.engine = JobEngine::gnu_parallel;
   write_job_scripts(request, plan_jobs(request));
   request.folder = request.folder.parent_path() / "{1}";
