@@ -11,6 +11,7 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/motion_course.h"
+#include "model/force_element.h"
 #include "model/rotation.h"
 
 namespace freeplay {
@@ -248,7 +249,7 @@ class MotionDoubts {
       const Marker& here = model.markers[static_cast<std::size_t>(axle)];
       if (here.body == ground) continue;
       for (const JointElement& joint : model.joints) {
-        if (joint.is_force || joint.gear >= 0 || &joint == &driven) continue;
+        if (is_force_element(joint) || joint.gear >= 0 || &joint == &driven) continue;
         for (const int end : {joint.marker_a, joint.marker_b}) {
           const Marker& there = model.markers[static_cast<std::size_t>(end)];
           if (there.body != here.body) continue;

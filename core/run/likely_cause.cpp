@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "component/contact_stiffness.h"
+#include "model/force_element.h"
 #include "run/drive_kinks.h"
 
 namespace freeplay {
@@ -198,7 +199,7 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
-    if (!element.is_force) continue;
+    if (!is_force_element(element)) continue;
     const double *wrench = &e.wrench[12 * at(j) + 6], torque = amount(wrench + 3);
     const double first = at(j) < wreck.first_forces.size() ? wreck.first_forces[at(j)] : 0.0;
     const double force = std::max(amount(wrench), first);
