@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -19,6 +21,7 @@
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -115,6 +118,41 @@ class Examination {
             fmt::format("no joint or force holds body '{}', which {}: connect it, or delete it", body.name,
                         body.gravity == Vector3{} ? "stays where it is" : "falls freely"),
             body.name, body.location);
+    }
+    std::vector<int> islands(at(bodies));
+    for (int i = 0; i < bodies; ++i) islands[at(i)] = root(i) == root(bodies) ? -1 : root(i);
+    find_islands(std::move(islands));
+  }
+
+  /// Bodies that hang together by joints alone, which nothing moves and nothing ties to ground. `island`: of each body;
+  /// -1: none.
+  void find_islands(std::vector<int> island) {
+    const auto leave_out = [&](BodyId body) {
+      if (body != ground) std::ranges::replace(island, island[at(body)], -1);
+    };
+    for (const AppliedForce& force : model_.forces) leave_out(body_of(force.marker));
+    for (const JointElement& joint : model_.joints) {
+      if (joint.gear < 0 && (is_force_element(joint) || joint.start_speed)) leave_out(body_of(joint.marker_a));
+    }
+    for (const Driver& driver : model_.drivers) leave_out(body_of(model_.joints[at(driver.joint)].marker_a));
+    for (std::size_t i = 0; i < island.size(); ++i) {
+      if (has_velocity(model_.bodies[i])) leave_out(static_cast<BodyId>(i));
+    }
+    std::map<int, std::vector<const Body*>> parts;
+    for (std::size_t i = 0; i < island.size(); ++i) {
+      if (island[i] >= 0) parts[island[i]].push_back(&model_.bodies[i]);
+    }
+    for (const auto& part : parts) {
+      const std::vector<const Body*>& bodies = part.second;
+      if (bodies.size() < 2) continue;
+      for (const Body* body : bodies) islands_.insert(body->name);
+      const bool falls = std::ranges::any_of(bodies, [](const Body* body) { return body->gravity != Vector3{}; });
+      doubt("not-connected",
+            fmt::format("no joint or force ties '{}' and '{}'{} to the others, which {}: connect them, or delete them",
+                        bodies[0]->name, bodies[1]->name,
+                        bodies.size() > 2 ? fmt::format(" and {} more", bodies.size() - 2) : "",
+                        falls ? "fall freely" : "stay where they are"),
+            bodies[0]->name, bodies[0]->location);
     }
   }
 
@@ -369,6 +407,8 @@ class Examination {
     structure_.free_motions = found.motions;
     for (const BodyId b : found.bodies) structure_.left_free.push_back(model_.bodies[at(b)].name);
     if (found.doubt.empty() || flies_) return;
+    const auto said = [&](const std::string& name) { return islands_.contains(name); };
+    if (!structure_.left_free.empty() && std::ranges::all_of(structure_.left_free, said)) return;
     const Body& first = model_.bodies[at(found.doubtful)];
     doubt("left-free", found.doubt, first.name, first.location);
   }
@@ -381,7 +421,8 @@ class Examination {
   const Evaluation& shut_;
   std::multimap<int, const JacobianBlock*> blocks_;  // of the closed system, by their first row
   std::vector<int> bypassed_;
-  bool flies_ = false;  // as a whole: nothing ties it to ground
+  std::set<std::string> islands_{};  // bodies that nothing ties to the others
+  bool flies_ = false;               // as a whole: nothing ties it to ground
   Structure structure_;
 };
 

@@ -89,7 +89,8 @@ class MotionDoubts {
     if (!bare && doubt_peak(driver, fastest, *written)) return;
     if (coordinate(driver) != Coordinate::angle) return judge_table_of_slide(driver, high - low, fastest, bare);
     const bool begins_far = settings_.start == 0.0 && std::abs(table.values()[0]) > bare_limit::angle;
-    if (bare && !speeds && (begins_far || looks_like_degrees(table.values()))) {
+    if (bare && !speeds &&
+        (begins_far || looks_like_degrees(table.values()) || rests_at_round_number(table.values()))) {
       written->warn("doubtful-angle",
                     fmt::format("'{}' goes from {:.6g} to {:.6g} rad: write 'unit: deg' if degrees are meant, else "
                                 "'unit: rad'",
@@ -218,6 +219,14 @@ class MotionDoubts {
     }
     const auto [low, high] = std::ranges::minmax(values);
     return high - low > bare_limit::angle && (eighths || (forward && back));
+  }
+
+  /// Comes to rest more than a turn away at a whole number or a half, as formulas do at a written one: no radian is
+  /// a part of a turn.
+  static bool rests_at_round_number(std::span<const double> values) {
+    const std::size_t n = values.size();
+    return n > 1 && values[n - 1] == values[n - 2] && std::abs(values[n - 1] - values[0]) > bare_limit::angle &&
+           std::abs(std::remainder(values[n - 1], 0.5)) < 1e-9;
   }
 
   void judge_turns(const Driver& driver, const Course& course, const CheckedValue& written) const {

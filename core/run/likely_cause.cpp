@@ -69,7 +69,8 @@ void suspect_bodies(const System& system, Suspects& suspects) {
     const Body& body = model.bodies[at(b)];
     const double own = extent(model, b), size = own > 0.0 ? own : system.size();
     const double inertia = largest_inertia(body, model.space), gyration = std::sqrt(inertia / body.mass);
-    suspects.add(gyration / (most_gyration * size), [&] {
+    // A wheel may be far larger than the way to its crank pin, but hardly than the whole machine.
+    suspects.add(gyration / std::max(most_gyration * size, system.size()), [&] {
       return fmt::format(
           "inertia of '{}' is {:.4g} kg m^2 for a mass of {:.4g} kg: its radius of gyration would be "
           "{:.2g} m",
