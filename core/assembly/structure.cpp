@@ -17,6 +17,7 @@
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
 #include "assembly/play_gap.h"
+#include "assembly/play_rows.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
@@ -31,6 +32,7 @@ using Eigen::MatrixXd;
 constexpr double coarse_accuracy = 0.5;     // by a clearance
 constexpr double coarse_for_a_model = 0.1;  // by its size
 constexpr double deep_start = 1.5;          // eccentricity of a journal, by its clearance
+constexpr double deep_by_load = 2.0;        // likewise, where its load presses it into a soft bearing
 
 class Examination {
  public:
@@ -191,15 +193,17 @@ class Examination {
       const Eigen::Vector3d axis(a.rotation[2], a.rotation[5], a.rotation[8]);
       if (pin) apart -= axis.dot(apart) * axis;
       const double eccentricity = apart.norm();
-      if (eccentricity <= deep_start * play) {
-        judge_depth(j);
+      const bool loaded = starts_by_its_load(joint);
+      if (eccentricity <= (loaded ? deep_by_load : deep_start) * play) {
+        if (!loaded) judge_depth(j);  // what its load does is judged by the run
         continue;
       }
       doubt("doubtful-clearance",
             fmt::format("the {} of joint '{}' starts {:.3g} m from the {}, {:.3g} m deep in its wall, as the clearance "
-                        "is {:.3g} m: check 'initial' and the clearance",
+                        "is {:.3g} m: check {} and the clearance",
                         slide ? "slider" : "journal", joint.name, eccentricity,
-                        slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play),
+                        slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play,
+                        loaded ? "the load, the stiffness of the contact" : "'initial'"),
             joint.name, joint.location);
     }
   }
