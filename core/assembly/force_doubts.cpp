@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -41,7 +42,7 @@ class ForceDoubts {
 
   void run() const {
     for (const JointElement& joint : model_.joints) {
-      if (!joint.is_force || !joint.parameters || joint.has_play) continue;
+      if (!is_force_element(joint) || !joint.parameters || joint.has_play) continue;
       if (does_nothing(joint)) {
         doubt_("unused",
                fmt::format("'{}' does nothing: none of its numbers that make a force is given; delete it, "
@@ -183,7 +184,7 @@ class ForceDoubts {
   void judge_pairs() const {
     std::map<std::tuple<const Component*, int, int, double>, std::vector<const JointElement*>> alike;
     for (const JointElement& joint : model_.joints) {
-      if (!joint.is_force || !joint.parameters || !is_plain(*joint.parameters)) continue;
+      if (!is_force_element(joint) || !joint.parameters || !is_plain(*joint.parameters)) continue;
       const auto [low, high] = std::minmax(joint.marker_a, joint.marker_b);
       std::vector<const JointElement*>& others =
           alike[{joint.parameters->component, low, high, sum_of_numbers(*joint.parameters)}];
@@ -248,11 +249,11 @@ class ForceDoubts {
     for (const int j : joints_of_[at(body)]) {
       const JointElement& joint = model_.joints[at(j)];
       if (joint.gear >= 0) return std::nullopt;
-      if (joint.is_force && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
-      const double k = joint.is_force && joint.parameters ? number(joint, "stiffness") : std::nan("");
-      if (joint.is_force && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
+      if (is_force_element(joint) && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
+      const double k = is_force_element(joint) && joint.parameters ? number(joint, "stiffness") : std::nan("");
+      if (is_force_element(joint) && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
         add_spring(hold, joint, k, body);
-      } else if (joint.is_force && (k == 0.0 || number(joint, "friction") >= 0.0)) {
+      } else if (is_force_element(joint) && (k == 0.0 || number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
       } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) && driven_[at(j)] == 0) {
         const double* axes = at_start_.markers[at(joint.marker_a)].rotation;

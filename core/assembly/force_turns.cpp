@@ -1,11 +1,22 @@
 #include "assembly/force_turns.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "base/index.h"
+#include "model/force_element.h"
 
 namespace freeplay {
+namespace {
+
+/// Given by the file for the element itself, as may be where it stands under `joints`.
+bool has_own_start(const Model& model, int element) {
+  return model.joints[at(element)].start_coordinate ||
+         std::ranges::any_of(model.drivers, [&](const Driver& driver) { return driver.joint == element; });
+}
+
+}  // namespace
 
 double start_angle(const Model& model, std::span<const double> coordinate, int element) {
   const JointElement& force = model.joints[at(element)];
@@ -14,9 +25,10 @@ double start_angle(const Model& model, std::span<const double> coordinate, int e
   const auto turned = [&](const JointElement& one) {
     return model.markers[at(one.marker_b)].angle - model.markers[at(one.marker_a)].angle;
   };
-  for (std::size_t j = 0; force.is_force && j < model.joints.size(); ++j) {
+  const bool follows = is_force_element(force) && !has_own_start(model, element);
+  for (std::size_t j = 0; follows && j < model.joints.size(); ++j) {
     const JointElement& joint = model.joints[j];
-    if (joint.is_force || joint.gear >= 0 || joint.layout.coordinate != Coordinate::angle) continue;
+    if (is_force_element(joint) || joint.gear >= 0 || joint.layout.coordinate != Coordinate::angle) continue;
     const bool same = body(joint.marker_a) == body(force.marker_a) && body(joint.marker_b) == body(force.marker_b);
     const bool opposite = body(joint.marker_a) == body(force.marker_b) && body(joint.marker_b) == body(force.marker_a);
     if (!same && !opposite) continue;

@@ -10,6 +10,7 @@
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -32,7 +33,7 @@ class Elements {
   void judge() {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& element = model_.joints[at(j)];
-      if (!element.is_force || !element.parameters || element.has_play || element.gear >= 0) continue;
+      if (!is_force_element(element) || !element.parameters || element.has_play || element.gear >= 0) continue;
       if (judge_idle(j)) continue;
       judge_damping(j);
       judge_ends(j);
@@ -94,7 +95,7 @@ class Elements {
     const std::optional<MatrixXd> rate = rate_of(j);
     for (int i = 0; i < static_cast<int>(model_.joints.size()); ++i) {
       const JointElement& joint = model_.joints[at(i)];
-      if (joint.is_force || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
+      if (is_force_element(joint) || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
       if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
       if (!acts_along_line(element) || joint.ideal_layout.pin == 0 || line_of(joint)) continue;
       const bool first = same_place(joint, element.marker_a), second = same_place(joint, element.marker_b);

@@ -16,6 +16,7 @@
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -75,7 +76,7 @@ class Guides {
     const System& system = mechanism_.system;
     const JointElement& joint = model_.joints[at(j)];
     const int width = system.layout().body_velocities(), rows = system.layout().rows(j).size;
-    if (joint.is_force || joint.gear >= 0 || rows < width - 1) return false;
+    if (is_force_element(joint) || joint.gear >= 0 || rows < width - 1) return false;
     if (rows == width || motions_.cols() == 0) return true;
     if (joint.ideal_layout.coordinate == Coordinate::none) return false;
     double row[12] = {}, bias = 0.0;
@@ -158,7 +159,7 @@ bool is_moved(const Model& model, const JointElement& joint) {
   BodyGroups groups(model.bodies.size());
   for (const JointElement& other : model.joints) {
     const BodyId a = body_of(other.marker_a), b = body_of(other.marker_b);
-    if (other.gear < 0 && !other.is_force && a != ground && b != ground) groups.unite(a, b);
+    if (other.gear < 0 && !is_force_element(other) && a != ground && b != ground) groups.unite(a, b);
   }
   const auto ends = [&](const JointElement& one) { return std::pair(body_of(one.marker_a), body_of(one.marker_b)); };
   const auto together = [&](BodyId body) {
@@ -185,7 +186,7 @@ bool is_moved(const Model& model, const JointElement& joint) {
 void doubt_guides(const System& system, const State& start, Structure& structure) {
   const Model& model = system.model();
   const auto is_guide = [](const JointElement& joint) {
-    return !joint.is_force && joint.gear < 0 && joint.ideal_layout.coordinate == Coordinate::position;
+    return !is_force_element(joint) && joint.gear < 0 && joint.ideal_layout.coordinate == Coordinate::position;
   };
   if (static_cast<int>(model.bodies.size()) * (model.space == Space::planar ? 3 : 6) > most_followed_velocities) return;
   if (std::ranges::none_of(model.joints, is_guide)) return;

@@ -85,6 +85,13 @@ bool gives_eccentricity(const JointElement& joint) { return gives(joint, "initia
 bool gives_velocity(const JointElement& joint) { return gives(joint, "initial.velocity"); }
 bool gives_tilt(const JointElement& joint) { return gives(joint, "initial.tilt"); }
 
+bool starts_by_its_load(const JointElement& joint) {
+  if (!joint.parameters) return false;
+  return std::ranges::any_of(joint.parameters->values, [](const auto& entry) {
+    return entry.second.given && entry.second.word > 0 && entry.first.ends_with(".initial");
+  });
+}
+
 std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,
                                  const std::function<bool(const JointElement&)>& gives_start) {
   const System& closed = mechanism.system;

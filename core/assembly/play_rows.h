@@ -16,6 +16,9 @@ enum class PlayRank { constraint, given, implied };
 bool gives_eccentricity(const JointElement& joint);
 bool gives_velocity(const JointElement& joint);
 bool gives_tilt(const JointElement& joint);
+/// Whether its block leaves the start to the type by another word than the one that stands for the middle: at rest
+/// under its load.
+bool starts_by_its_load(const JointElement& joint);
 
 /// By row of the closed mechanism: rows of joints with play that hold shifts are `given` where gives(joint); those that
 /// hold turns alone, as of the tilts of a journal whose block gives none, and all others of these joints are `implied`;

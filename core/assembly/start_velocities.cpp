@@ -14,6 +14,7 @@
 #include "base/index.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -222,7 +223,7 @@ class Velocities {
     std::vector<ClosedMechanism::Lead> joints;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
-      if (joint.is_force || joint.gear >= 0 || joint.ideal_layout.coordinate == Coordinate::none) continue;
+      if (is_force_element(joint) || joint.gear >= 0 || joint.ideal_layout.coordinate == Coordinate::none) continue;
       joints.push_back({j, 0.0});
     }
     const ClosedMechanism::Rows rows = mechanism_.speed_rows(joints);

@@ -5,6 +5,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <set>
+#include <string>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -15,10 +17,12 @@
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
 #include "assembly/play_gap.h"
+#include "assembly/play_rows.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -28,6 +32,7 @@ using Eigen::MatrixXd;
 constexpr double coarse_accuracy = 0.5;     // by a clearance
 constexpr double coarse_for_a_model = 0.1;  // by its size
 constexpr double deep_start = 1.5;          // eccentricity of a journal, by its clearance
+constexpr double deep_by_load = 2.0;        // likewise, where its load presses it into a soft bearing
 
 class Examination {
  public:
@@ -116,6 +121,41 @@ class Examination {
                         body.gravity == Vector3{} ? "stays where it is" : "falls freely"),
             body.name, body.location);
     }
+    std::vector<int> islands(at(bodies));
+    for (int i = 0; i < bodies; ++i) islands[at(i)] = root(i) == root(bodies) ? -1 : root(i);
+    find_islands(std::move(islands));
+  }
+
+  /// Bodies that hang together by joints alone, which nothing moves and nothing ties to ground. `island`: of each body;
+  /// -1: none.
+  void find_islands(std::vector<int> island) {
+    const auto leave_out = [&](BodyId body) {
+      if (body != ground) std::ranges::replace(island, island[at(body)], -1);
+    };
+    for (const AppliedForce& force : model_.forces) leave_out(body_of(force.marker));
+    for (const JointElement& joint : model_.joints) {
+      if (joint.gear < 0 && (is_force_element(joint) || joint.start_speed)) leave_out(body_of(joint.marker_a));
+    }
+    for (const Driver& driver : model_.drivers) leave_out(body_of(model_.joints[at(driver.joint)].marker_a));
+    for (std::size_t i = 0; i < island.size(); ++i) {
+      if (has_velocity(model_.bodies[i])) leave_out(static_cast<BodyId>(i));
+    }
+    std::map<int, std::vector<const Body*>> parts;
+    for (std::size_t i = 0; i < island.size(); ++i) {
+      if (island[i] >= 0) parts[island[i]].push_back(&model_.bodies[i]);
+    }
+    for (const auto& part : parts) {
+      const std::vector<const Body*>& bodies = part.second;
+      if (bodies.size() < 2) continue;
+      for (const Body* body : bodies) islands_.insert(body->name);
+      const bool falls = std::ranges::any_of(bodies, [](const Body* body) { return body->gravity != Vector3{}; });
+      doubt("not-connected",
+            fmt::format("no joint or force ties '{}' and '{}'{} to the others, which {}: connect them, or delete them",
+                        bodies[0]->name, bodies[1]->name,
+                        bodies.size() > 2 ? fmt::format(" and {} more", bodies.size() - 2) : "",
+                        falls ? "fall freely" : "stay where they are"),
+            bodies[0]->name, bodies[0]->location);
+    }
   }
 
   bool accuracy_says_nothing() const { return model_.settings.accuracy > coarse_for_a_model * released_.size(); }
@@ -153,15 +193,17 @@ class Examination {
       const Eigen::Vector3d axis(a.rotation[2], a.rotation[5], a.rotation[8]);
       if (pin) apart -= axis.dot(apart) * axis;
       const double eccentricity = apart.norm();
-      if (eccentricity <= deep_start * play) {
-        judge_depth(j);
+      const bool loaded = starts_by_its_load(joint);
+      if (eccentricity <= (loaded ? deep_by_load : deep_start) * play) {
+        if (!loaded) judge_depth(j);  // what its load does is judged by the run
         continue;
       }
       doubt("doubtful-clearance",
             fmt::format("the {} of joint '{}' starts {:.3g} m from the {}, {:.3g} m deep in its wall, as the clearance "
-                        "is {:.3g} m: check 'initial' and the clearance",
+                        "is {:.3g} m: check {} and the clearance",
                         slide ? "slider" : "journal", joint.name, eccentricity,
-                        slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play),
+                        slide ? "middle of its guide" : "centre of its bearing", eccentricity - play, play,
+                        loaded ? "the load, the stiffness of the contact" : "'initial'"),
             joint.name, joint.location);
     }
   }
@@ -369,6 +411,8 @@ class Examination {
     structure_.free_motions = found.motions;
     for (const BodyId b : found.bodies) structure_.left_free.push_back(model_.bodies[at(b)].name);
     if (found.doubt.empty() || flies_) return;
+    const auto said = [&](const std::string& name) { return islands_.contains(name); };
+    if (!structure_.left_free.empty() && std::ranges::all_of(structure_.left_free, said)) return;
     const Body& first = model_.bodies[at(found.doubtful)];
     doubt("left-free", found.doubt, first.name, first.location);
   }
@@ -381,7 +425,8 @@ class Examination {
   const Evaluation& shut_;
   std::multimap<int, const JacobianBlock*> blocks_;  // of the closed system, by their first row
   std::vector<int> bypassed_;
-  bool flies_ = false;  // as a whole: nothing ties it to ground
+  std::set<std::string> islands_{};  // bodies that nothing ties to the others
+  bool flies_ = false;               // as a whole: nothing ties it to ground
   Structure structure_;
 };
 

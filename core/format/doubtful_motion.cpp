@@ -11,6 +11,7 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/motion_course.h"
+#include "model/force_element.h"
 #include "model/rotation.h"
 
 namespace freeplay {
@@ -88,7 +89,8 @@ class MotionDoubts {
     if (!bare && doubt_peak(driver, fastest, *written)) return;
     if (coordinate(driver) != Coordinate::angle) return judge_table_of_slide(driver, high - low, fastest, bare);
     const bool begins_far = settings_.start == 0.0 && std::abs(table.values()[0]) > bare_limit::angle;
-    if (bare && !speeds && (begins_far || looks_like_degrees(table.values()))) {
+    if (bare && !speeds &&
+        (begins_far || looks_like_degrees(table.values()) || rests_at_round_number(table.values()))) {
       written->warn("doubtful-angle",
                     fmt::format("'{}' goes from {:.6g} to {:.6g} rad: write 'unit: deg' if degrees are meant, else "
                                 "'unit: rad'",
@@ -219,6 +221,14 @@ class MotionDoubts {
     return high - low > bare_limit::angle && (eighths || (forward && back));
   }
 
+  /// Comes to rest more than a turn away at a whole number or a half, as formulas do at a written one: no radian is
+  /// a part of a turn.
+  static bool rests_at_round_number(std::span<const double> values) {
+    const std::size_t n = values.size();
+    return n > 1 && values[n - 1] == values[n - 2] && std::abs(values[n - 1] - values[0]) > bare_limit::angle &&
+           std::abs(std::remainder(values[n - 1], 0.5)) < 1e-9;
+  }
+
   void judge_turns(const Driver& driver, const Course& course, const CheckedValue& written) const {
     const bool angle = driver.kind == DriverKind::angle;
     const double speed = angle ? course.fastest : std::max(std::abs(course.low), std::abs(course.high));
@@ -248,7 +258,7 @@ class MotionDoubts {
       const Marker& here = model.markers[static_cast<std::size_t>(axle)];
       if (here.body == ground) continue;
       for (const JointElement& joint : model.joints) {
-        if (joint.is_force || joint.gear >= 0 || &joint == &driven) continue;
+        if (is_force_element(joint) || joint.gear >= 0 || &joint == &driven) continue;
         for (const int end : {joint.marker_a, joint.marker_b}) {
           const Marker& there = model.markers[static_cast<std::size_t>(end)];
           if (there.body != here.body) continue;

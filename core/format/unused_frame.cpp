@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "format/doubtful_body.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 namespace {
@@ -16,7 +17,7 @@ std::unordered_map<BodyId, std::string> shared_holds(const Draft& draft) {
   std::unordered_map<BodyId, std::string> shared;
   std::unordered_map<int, const JointElement*> first;  // by marker
   for (const JointElement& joint : draft.model.joints) {
-    if (joint.gear >= 0 || joint.is_force) continue;
+    if (joint.gear >= 0 || is_force_element(joint)) continue;
     for (const int index : {joint.marker_a, joint.marker_b}) {
       const Marker& marker = draft.model.markers[static_cast<std::size_t>(index)];
       const auto [known, fresh] = first.emplace(index, &joint);
@@ -44,7 +45,7 @@ void warn_of_idle_links(const Draft& draft) {
     for (const int index : {joint.marker_a, joint.marker_b}) {
       if (at(index).body == ground) continue;
       Link& link = links[static_cast<std::size_t>(at(index).body)];
-      const bool pin = joint.gear < 0 && !joint.is_force && joint.ideal_layout.coordinate == Coordinate::angle;
+      const bool pin = joint.gear < 0 && !is_force_element(joint) && joint.ideal_layout.coordinate == Coordinate::angle;
       link.idle = link.idle && pin && (link.marker < 0 || link.marker == index);
       link.marker = index;
       link.pins.push_back(&joint);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/force_element.h"
+
 namespace freeplay {
 
 // Bodies are as far apart as their markers let them be.
@@ -34,7 +36,7 @@ WholeMass whole_mass(const Model& model) {
 
 bool is_on_ground(const Model& model) {
   return std::ranges::any_of(model.joints, [&](const JointElement& joint) {
-    if (joint.is_force || joint.gear >= 0) return false;
+    if (is_force_element(joint) || joint.gear >= 0) return false;
     const auto body = [&](int marker) { return model.markers[static_cast<std::size_t>(marker)].body; };
     return body(joint.marker_a) == ground || body(joint.marker_b) == ground;
   });

@@ -38,7 +38,12 @@ bool in_a_loop(const Model& model, int without) {
 }  // namespace
 
 RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
-    : run_(run), failure_(failure), recorder_(recorder), joint_warnings_(run.model.joints.size()), motion_(run.system) {
+    : run_(run),
+      failure_(failure),
+      recorder_(recorder),
+      joint_warnings_(run.model.joints.size()),
+      motion_(run.system),
+      blows_(run.system) {
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
     joint_warnings_[at(j)].values = values;
@@ -48,14 +53,14 @@ RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
 }
 
 void RunDoubts::save(ArchiveWriter& archive) const {
-  archive(warning_values_, torn_from_, motion_);
+  archive(warning_values_, torn_from_, motion_, blows_);
   for (const Warning& warning : joint_warnings_) {
     archive(warning.text != nullptr, std::string(warning.text != nullptr ? warning.text : ""), warning.time);
   }
 }
 
 void RunDoubts::restore(ArchiveReader& archive) {
-  archive(warning_values_, torn_from_, motion_);
+  archive(warning_values_, torn_from_, motion_, blows_);
   warning_texts_.resize(joint_warnings_.size());
   for (std::size_t j = 0; j < joint_warnings_.size(); ++j) {
     bool warned = false;
@@ -67,6 +72,7 @@ void RunDoubts::restore(ArchiveReader& archive) {
 void RunDoubts::note_motion() {
   if (run_.adaptive) return;
   motion_.add(run_.trial.t(), run_.trial.t() - run_.accepted.t(), run_.accepted.a(), run_.trial.a(), run_.trial.v());
+  blows_.add(run_.e_trial);
 }
 
 void RunDoubts::note_fast_motion() {
@@ -84,6 +90,21 @@ void RunDoubts::note_fast_motion() {
                               "size follow with another frequency; ask for shorter steps, or for an accuracy",
                               body, fewest.steps, fewest_steps_in_period),
        .element = body,
+       .value = fewest.steps,
+       .limit = fewest_steps_in_period});
+}
+
+void RunDoubts::note_lasting_blows() {
+  const LastingBlows::Fewest fewest = blows_.fewest();
+  if (!(fewest.steps < fewest_steps_in_period)) return;
+  const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(fewest.joint)].name);
+  run_.outcome.doubts.push_back(
+      {.id = "impact-steps",
+       .level = Trust::doubtful,
+       .message = fmt::format("{}: a blow that begins a lasting contact took {:g} steps, fewer than {:g}; ask for "
+                              "shorter steps, or for an accuracy",
+                              joint, fewest.steps, fewest_steps_in_period),
+       .element = joint,
        .value = fewest.steps,
        .limit = fewest_steps_in_period});
 }

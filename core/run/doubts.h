@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "run/fast_motion.h"
+#include "run/lasting_blows.h"
 #include "run/recorder.h"
 
 namespace freeplay {
@@ -27,6 +28,7 @@ class RunDoubts {
   void format_warnings();
   void note_unused_play();
   void note_fast_motion();
+  void note_lasting_blows();
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
@@ -48,7 +50,8 @@ class RunDoubts {
   std::vector<double> warning_values_;      // the joints' own channels when they warned
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from_;
-  FastMotion motion_;  // in steps of one size
+  FastMotion motion_;   // in steps of one size
+  LastingBlows blows_;  // likewise
 };
 
 }  // namespace freeplay

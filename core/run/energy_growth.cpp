@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/force_element.h"
+
 namespace freeplay {
 namespace {
 constexpr double suspicious =
@@ -50,7 +52,7 @@ double EnergyGrowth::energy_of_drives() const {
     lifted += std::max(along_size(&run_.e_accepted->applied[6 * f]), along_size(&run_.e_trial->applied[6 * f]));
   }
   for (std::size_t j = 0; j < run_.model.joints.size(); ++j) {
-    if (run_.model.joints[j].is_force) lifted += along_size(&run_.e_accepted->wrench[12 * j + 6]);
+    if (is_force_element(run_.model.joints[j])) lifted += along_size(&run_.e_accepted->wrench[12 * j + 6]);
   }
   for (const Body& body : run_.model.bodies) {
     mass += body.mass;

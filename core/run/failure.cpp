@@ -303,7 +303,8 @@ void RunFailure::explain_singular_position() {
 // A number of the model that no machine has is worth more than any advice about steps.
 void RunFailure::explain_failure() {
   if (run_.outcome.exit_code != 4 || run_.outcome.reason.find(cause_words) != std::string::npos) return;
-  for (const std::string_view id : {"[dead-point]", "[locked]", "[ik-unreachable]", "[bad-expression]"}) {
+  for (const std::string_view id :
+       {"[dead-point]", "[locked]", "[ik-unreachable]", "[bad-expression]", "[event-storm]"}) {
     if (run_.outcome.reason.ends_with(id)) return;
   }
   const Wreck wreck{run_.accepted.t(), run_.adaptive ? 0.0 : run_.settings.step, failed_joint_, run_.first_forces};

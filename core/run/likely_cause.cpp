@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "component/contact_stiffness.h"
+#include "model/force_element.h"
 #include "run/drive_kinks.h"
 
 namespace freeplay {
@@ -68,7 +69,8 @@ void suspect_bodies(const System& system, Suspects& suspects) {
     const Body& body = model.bodies[at(b)];
     const double own = extent(model, b), size = own > 0.0 ? own : system.size();
     const double inertia = largest_inertia(body, model.space), gyration = std::sqrt(inertia / body.mass);
-    suspects.add(gyration / (most_gyration * size), [&] {
+    // A wheel may be far larger than the way to its crank pin, but hardly than the whole machine.
+    suspects.add(gyration / std::max(most_gyration * size, system.size()), [&] {
       return fmt::format(
           "inertia of '{}' is {:.4g} kg m^2 for a mass of {:.4g} kg: its radius of gyration would be "
           "{:.2g} m",
@@ -198,7 +200,7 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
-    if (!element.is_force) continue;
+    if (!is_force_element(element)) continue;
     const double *wrench = &e.wrench[12 * at(j) + 6], torque = amount(wrench + 3);
     const double first = at(j) < wreck.first_forces.size() ? wreck.first_forces[at(j)] : 0.0;
     const double force = std::max(amount(wrench), first);

@@ -126,6 +126,7 @@ const Outcome& Simulation::Impl::finish() {
   doubts.format_warnings();
   doubts.note_unused_play();
   doubts.note_fast_motion();
+  doubts.note_lasting_blows();
   adaptive.doubt_steps();
   failure.explain_failure();
   corners.format_jumps();

@@ -30,7 +30,7 @@ SlowSteps::SlowSteps(RunContext& run, RunFailure& failure)
     : run_(run),
       failure_(failure),
       from_(run.settings.start),
-      changes_(run.model.joints.size() + run.model.drivers.size()),
+      changes_(run.model.joints.size() + run.model.drivers.size() + run.model.forces.size()),
       contacts_(run) {}
 
 // The last step goes from what the trial's evaluation holds now to the accepted one.
@@ -41,7 +41,11 @@ double SlowSteps::change_of(std::size_t load) const {
     const double *a = &now.wrench[12 * load + 6], *b = &before.wrench[12 * load + 6];
     return std::max(difference(a, b), difference(a + 3, b + 3));
   }
-  const std::size_t d = load - joints;
+  const std::size_t d = load - joints, drivers = run_.model.drivers.size();
+  if (d >= drivers) {
+    const double *a = &now.applied[6 * (d - drivers)], *b = &before.applied[6 * (d - drivers)];
+    return std::max(difference(a, b), difference(a + 3, b + 3));
+  }
   if (prescribes(run_.model.drivers[d].kind)) return 0.0;
   const double a[3] = {now.motion[d].value, 0.0, 0.0}, b[3] = {before.motion[d].value, 0.0, 0.0};
   return difference(a, b);
@@ -54,6 +58,8 @@ void SlowSteps::watch() {
 
 std::string SlowSteps::name_of(std::size_t load) const {
   const std::size_t joints = run_.model.joints.size();
+  const std::size_t drivers = run_.model.drivers.size();
+  if (load >= joints + drivers) return fmt::format("force '{}'", run_.model.forces[load - joints - drivers].name);
   if (load >= joints) return fmt::format("driver '{}'", run_.model.drivers[load - joints].name);
   const JointElement& joint = run_.model.joints[load];
   return fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name);
@@ -67,7 +73,7 @@ SlowSteps::Blame SlowSteps::blame() const {
   const auto most = std::ranges::max_element(changes_);
   if (most == changes_.end() || !(*most > quick)) return {};
   const std::string name = name_of(static_cast<std::size_t>(most - changes_.begin()));
-  return {name, fmt::format("{} changes by {:.2g} % from each to the next: it jumps, or is stiff", name,
+  return {name, fmt::format("{} changes by {:.3g} % from each to the next: it jumps, or is stiff", name,
                             100.0 * std::min(*most, 1.0))};
 }
 

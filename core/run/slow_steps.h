@@ -59,7 +59,7 @@ class SlowSteps {
   long steps_ = 0, limited_ = 0;
   int joint_ = -1;
   double from_;                  // where the block begins [s]
-  std::vector<double> changes_;  // of joints, then drivers: sums over the last steps of the block
+  std::vector<double> changes_;  // of joints, drivers and loads: sums over the last steps of the block
   ContactPaces contacts_;
   double watched_from_ = 0.0;         // where the watched steps of the block begin [s]
   double value_ = 0.0, limit_ = 0.0;  // that were judged where the sentence was found

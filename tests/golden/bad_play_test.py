@@ -90,6 +90,17 @@ DOUBTED = (
 )
 
 
+# A weight that presses its pin into a bearing of given stiffness [N/m].
+HANGING = """freeplay: 1
+gravity: [0, -10]
+bodies: {weight: {mass: 100, inertia: 1}}
+joints:
+  j: {type: revolute, between: [ground, weight], clearance: {bearing_radius: 20 mm, radial_clearance: 0.05 mm, initial: loaded,
+      contact: {law: expression, force: "%s N/m*delta"}}}
+simulation: {end: 0.01, step: 1e-5}
+"""
+
+
 class BadPlay(ModelTest):
     def test_each_type_runs_with_a_sound_block(self):
         for name, (model, block, _) in WRONG.items():
@@ -104,6 +115,12 @@ class BadPlay(ModelTest):
                     error = self.refusal(model % (name.split()[0], wrong) + END)[0]
                     self.assertIn(words, error["message"])
                     self.assertRegex(self.read("m.yaml").splitlines()[error["line"] - 1], "^  (j:|    clearance:)")
+
+    # 1 kN on 25 kN/mm and on 10 kN/mm: 40 and 100 um, of a clearance of 50 um.
+    def test_a_start_under_load_is_doubted_where_the_load_presses_deeper_than_the_clearance(self):
+        self.assertNotIn("doubtful-clearance", self.freeplay("validate", self.write("m.yaml", HANGING % "25e6"))[1])
+        words = "0.0001 m deep in its wall, as the clearance is 5e-05 m: check the load, the stiffness of the contact and the clearance"
+        self.assertIn(words, self.freeplay("validate", self.write("m.yaml", HANGING % "10e6"))[1])
 
     def test_a_driver_on_what_play_leaves_undefined_is_refused_at_the_driver(self):
         for kind, model, block, what, words in UNDRIVEN:

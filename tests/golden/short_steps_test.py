@@ -31,6 +31,22 @@ joints:
 simulation: {end: 0.1 s, accuracy: 1 um}
 """
 
+# A load that turns with the speed of the plunger, which it brings to rest and holds there.
+PUMP = """freeplay: 1
+bodies:
+  wheel: {mass: 2, inertia: 3e-3, frames: {pin: [8 mm, 0]}}
+  rod: {mass: 0.6, inertia: 1e-3, com: [50 mm, 0], frames: {end: [110 mm, 0]}, pose: {position: [8 mm, 0]}}
+  plunger: {mass: 0.3, inertia: 1e-4}
+joints:
+  shaft: {type: revolute, between: [ground, wheel]}
+  pin: {type: revolute, between: [wheel/pin, rod]}
+  end: {type: revolute, between: [rod/end, plunger]}
+  bore: {type: prismatic, between: [ground, plunger]}
+forces: {oil: {type: force, at: plunger, value: ["-400 N*sign(body.plunger.vx)", 0]}}
+initial: {joints: {shaft: 20 deg}, speeds: {shaft: 3}}
+simulation: {end: 0.3 s, accuracy: 1 um, stop: [{value: t, above: 7.622e-3}]}
+"""
+
 
 class ShortSteps(ProgramTest):
     def test_a_run_that_would_take_days_ends_and_names_the_cause(self):
@@ -58,6 +74,13 @@ class ShortSteps(ProgramTest):
         reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
         self.assertIn(("short-steps", "joint 'hole'"), [(r["id"], r["element"]) for r in reasons])
         self.assertIn("trust: doubtful", out)
+
+    def test_a_load_that_jumps_with_each_step_is_named(self):
+        self.write("m.yaml", PUMP)
+        err = self.freeplay("run", "m.yaml", "--out", "r")[1]
+        self.assertRegex(err, r"warning: steps of \S+ s at .*; force 'oil' changes by 100 % from each to the next: it jumps, or is stiff")
+        reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
+        self.assertIn(("short-steps", "force 'oil'"), [(r["id"], r["element"]) for r in reasons])
 
     def test_a_contact_that_starts_under_its_load_is_not_named(self):
         self.write("m.yaml", DROP.replace("initial: {eccentricity: [0 mm, -0.1 mm]}", "initial: loaded"))

@@ -218,6 +218,8 @@ CASES = {
         (0, pendulum("initial:", "  arm: {type: revolute, between: [rod, arm]}\ninitial:").replace("bodies:", "bodies:\n  arm: {mass: 1 kg, inertia: 0.1}"), RUN),
     "no joint or force holds body '...', which ...: connect it, or delete it [not-connected]":
         (0, pendulum("joints:\n", "  spare: {mass: 1 kg, inertia: 0.1}\njoints:\n"), RUN),
+    "no joint or force ties '...' and '...' to the others, which ...: connect them, or delete them [not-connected]":
+        (0, pendulum("joints:\n", "  one: {mass: 1 kg, inertia: 0.1}\n  two: {mass: 1 kg, inertia: 0.1}\njoints:\n  tie: {type: revolute, between: [one, two]}\n"), RUN),
     "joint '...' holds nothing that '...' does not hold between the same two bodies: ... [duplicate-joint]":
         (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
     "'...' has the same frames and numbers as '...', so that both act as one twice as strong: ... [duplicate-force]":
