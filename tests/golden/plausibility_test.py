@@ -94,11 +94,9 @@ MISTAKES = [
     (ROD, "[1e-5, 0.0208, 0.0208]", "[0.0208, 1.5e-3, 0.0208]", INERTIA, "[0.0208", "Ixx, Iyy, Izz"),
     (CRANK, GUIDE, "", "left-free", "slider", "no start is given for 'slider'", {"coupler: {": "coupler: {pose: {angle: 0.3}, "}),
     (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler', 'slider'", {"slider: {": "slider: {pose: {position: [0.14, 0]}, "}),
-    (CRANK, GUIDE, "", "left-free", "slider", "no start is given for 'slider'", {"slider: {": "slider: {pose: {position: [0.14, 0], angle: 0}, "}),
+    (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler'", {"slider: {": "slider: {pose: {position: [0.14, 0], angle: 0}, "}),
     (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler', 'slider'",
      {"slider: {": "slider: {pose: {position: [0.14, 0]}, com: [0, 0.01], "}),
-    (CART, "tip: [0.3, 0]", "tip: [0.3, 0], shoe: [0.3, 0.1]", "left-free", "pole", "no start is given",
-     {"pole: {": "pole: {pose: {angle: 0.2}, ", "initial: {joints: {hinge: -1.2}}\n": ""}),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e3", VALUE, "wrist", "rubber"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 20}", VALUE, "20}", "coefficients of friction"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 0.0005\n      initial: {eccentricity: [0.002, 0]}",
@@ -295,6 +293,32 @@ class Plausibility(ProgramTest):
                 for part, instead in more[1].items() if len(more) > 1 else ():
                     text = text_of(text, part, instead)
                 self.assertEqual([], self.messages(text))
+
+    def test_a_start_that_is_given_is_meant(self):
+        """A pose with its angle says where a body begins; a frame that a loop was to close on makes a guess of it."""
+        hanging = text_of(CART, "initial: {joints: {hinge: -1.2}}\n", "").replace("pole: {", "pole: {pose: {angle: 0.2}, ")
+        stone = "bodies:\n  stone: {mass: 1, inertia: 1e-3, pose: {position: [1, 1]%s}}"
+        disc = "bodies:\n  disc: {mass: 1, inertia: 1e-3%s}"
+        axle = "joints:\n  axle: {type: revolute, between: [pole/tip, disc]}"
+        bar = "bodies:\n  bar: {mass: 1, inertia: 1e-2, frames: {end: [0.3, 0]}, pose: {position: [%s, 0.06], angle: 2}}"
+        foot = "joints:\n  foot: {type: revolute, between: [ground/post, bar/end]}"
+        base = {"simulation:": "frames: {ground/post: [0.17, 0.33]}\nsimulation:", "joints:": foot}
+        for changes, wanted in [
+                ({}, []),
+                ({"tip: [0.3, 0]": "tip: [0.3, 0], shoe: [0.3, 0.1]"}, ["unused"]),
+                ({"bodies:": stone % ""}, ["not-connected"]),
+                ({"bodies:": stone % ", angle: 0.3"}, ["not-connected"]),
+                ({"bodies:": stone % ", angle: 0.3", "tip: [0.3, 0]": "tip: [0.3, 0], shoe: [0.3, 0.1]"}, ["not-connected", "unused"]),
+                ({"bodies:": disc % ", pose: {angle: 0}", "joints:": axle}, []),
+                ({"bodies:": disc % "", "joints:": axle}, ["left-free"]),
+                ({"bodies:": bar % "0.29", **base}, []),
+                # The pin between both bars is missing.
+                ({"bodies:": bar % "0.29", "tip: [0.3, 0]": "tip: [0.3, 0], top: [0.3, 0]", **base}, ["left-free", "unused"])]:
+            with self.subTest(changes):
+                text = hanging
+                for old, new in changes.items():
+                    text = text_of(text, old, new)
+                self.assertEqual(wanted, sorted(m["id"] for m in self.messages(text)), self.messages(text))
 
     def test_a_structure_that_is_hardly_meant_is_in_the_verdict(self):
         for old, new, words in [(GUIDE, "", "left over"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "joint 'two' holds nothing")]:
