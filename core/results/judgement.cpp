@@ -355,6 +355,20 @@ void judge_instant(const Settings& settings, double window, Verdict& verdict) {
                .limit = shortest_window * settings.discard});
 }
 
+bool judge_swing(const RunRecord& record, double window, Verdict& verdict) {
+  const Swing& swing = record.outcome.slowest;
+  if (swing.body < 0 || window >= swing.period * whole_period) return false;
+  const std::string body = fmt::format("body '{}'", record.model.bodies[at(swing.body)].name);
+  verdict.add({.id = "statistics-window",
+               .level = Trust::doubtful,
+               .message = fmt::format("statistics cover {:.3g} s, less than the {:.3g} s in which {} moves to and fro",
+                                      window, swing.period, body),
+               .element = body,
+               .value = window,
+               .limit = swing.period});
+  return true;
+}
+
 void judge_window(const RunRecord& record, Verdict& verdict) {
   const Settings& settings = record.model.settings;
   const double from = settings.start + settings.discard, window = record.outcome.time - from;
@@ -393,6 +407,7 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   }
   if (settings.discard > 0.0 && window < shortest_window * settings.discard)
     return judge_instant(settings, window, verdict);
+  if (judge_swing(record, window, verdict)) return;
   // Without a period what was left out at the start says that a lasting state is looked for.
   const auto impacts = static_cast<double>(record.statistics.contacts());
   if (settings.discard == 0.0 || record.statistics.contacts_total() == 0 || impacts >= fewest_impacts) return;

@@ -7,6 +7,7 @@
 
 #include "run/fast_motion.h"
 #include "run/recorder.h"
+#include "run/slow_motion.h"
 
 namespace freeplay {
 
@@ -18,7 +19,7 @@ class RunDoubts {
   void note_event_directions();
   /// Forces at the start, to which later ones are compared.
   void note_first_forces();
-  /// Of a step of one size that is about to be accepted: how fast what moves does so.
+  /// Of a step that is about to be accepted: how fast what moves does so, in steps of one size, and how slowly.
   void note_motion();
   /// After an accepted step of the length dt: false, with the outcome, where going on makes no sense.
   bool watch_row(double dt);
@@ -26,7 +27,7 @@ class RunDoubts {
   /// Once the run is over: warnings of joints, and play that was never used.
   void format_warnings();
   void note_unused_play();
-  void note_fast_motion();
+  void judge_motion();
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
@@ -49,6 +50,8 @@ class RunDoubts {
   /// Time from which drivers pull the mechanism apart, looked for when a journal is deeper than its play.
   std::optional<double> torn_from_;
   FastMotion motion_;  // in steps of one size
+  SlowMotion slow_;
+  bool swings_ = false;  // whether the run looks for a period
 };
 
 }  // namespace freeplay
