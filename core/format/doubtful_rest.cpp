@@ -8,6 +8,8 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/motion_course.h"
+#include "format/parameter_scope.h"
+#include "model/time_function.h"
 
 namespace freeplay {
 namespace {
@@ -16,10 +18,10 @@ constexpr std::size_t most_formulas = 2000;   // that are looked at
 constexpr double later[] = {10.0, 1e3, 1e6};  // runs in which what rests may begin
 constexpr double inside = 1.0 - 1e-9;         // part of the run: what begins at its very end does so after it
 
-/// One entry of `drivers` or `forces` whose formulas or table depend on time.
+/// What is written of formulas, or a table, that depend on time.
 struct Waiting {
   CheckedValue written;
-  bool is_load = false;  ///< a force, torque or effort: zero is nothing at all
+  bool is_load = false;  ///< a force, torque, effort or what makes one: zero is nothing at all
   bool zero = true;      ///< in the whole run
   double begins = unbounded;
 };
@@ -56,6 +58,44 @@ class RestDoubts {
     if (!written) return;
     const bool plain = force.by_motion.empty();
     judge(plain ? force.value : force.in_time, {.written = *written, .is_load = true, .zero = plain});
+  }
+
+  void judge(const InverseKinematics& entry) const {
+    std::vector<Expression> functions;
+    for (const std::optional<Expression>& function : entry.path.functions) {
+      if (function) functions.push_back(*function);
+    }
+    const auto driver = functions.empty() ? std::nullopt : map_of("drivers", entry.name);
+    const auto block = driver ? MapReader(*driver, "driver").find("inverse_kinematics") : std::nullopt;
+    const auto written = block ? MapReader(*block, "inverse_kinematics").find("path") : std::nullopt;
+    if (written) judge(functions, {.written = *written, .zero = false});
+  }
+
+  /// Parameters of a joint or of an entry of `forces`.
+  void judge(const JointElement& element) const {
+    if (!element.parameters) return;
+    std::optional<CheckedValue> entry;
+    std::size_t place = 0;
+    for (const Parameter& parameter : element.parameters->component->description.parameters) {
+      const std::string_view name = parameter.name;
+      std::vector<Expression> formulas;
+      bool whole = true;
+      const auto value = element.parameters->values.find(name);
+      if (const Expression* own =
+              value == element.parameters->values.end() ? nullptr : written_expression(value->second))
+        formulas.push_back(*own);
+      for (std::size_t i = 0; may_follow_motion(parameter) && i < element.parts.size(); ++i) {
+        if (element.parts[i].formula != place) continue;
+        formulas.push_back(element.in_time[i]);
+        whole = element.parts[i].whole;
+      }
+      if (may_follow_motion(parameter)) ++place;
+      if (formulas.empty()) continue;
+      if (!entry) entry = map_of(element.is_force ? "forces" : "joints", element.name);
+      const auto written = entry ? MapReader(*entry, Uses::presets).find(parameter.name) : std::nullopt;
+      const std::string unit = unit_text(parameter, *element.parameters);
+      if (written) judge(formulas, {.written = *written, .is_load = unit != "m" && unit != "rad", .zero = whole});
+    }
   }
 
  private:
@@ -151,6 +191,8 @@ void doubt_rests(const Draft& draft) {
     if (model.drivers[i].kinematics < 0) doubts.judge(model.drivers[i]);
   }
   for (std::size_t i = 0; i < std::min(model.forces.size(), most_formulas); ++i) doubts.judge(model.forces[i]);
+  for (std::size_t i = 0; i < std::min(model.kinematics.size(), most_formulas); ++i) doubts.judge(model.kinematics[i]);
+  for (std::size_t i = 0; i < std::min(model.joints.size(), most_formulas); ++i) doubts.judge(model.joints[i]);
 }
 
 }  // namespace freeplay
