@@ -15,7 +15,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-constexpr double near = 0.1;  // by the size of the model: given poses are guesses
+constexpr double closes_within = 0.1;  // by the size of the model: given poses are guesses
 
 class FreeMotions {
  public:
@@ -263,7 +263,8 @@ class FreeMotions {
       for (const Marker& other : model_.frames) {
         if (frame.body == other.body || !(moves(frame.body) || moves(other.body)) || other.name.ends_with("/com"))
           continue;
-        if ((place_of(other) - place).norm() > near * closed_.size() || are_joined(frame.body, other.body)) continue;
+        if ((place_of(other) - place).norm() > closes_within * closed_.size() || are_joined(frame.body, other.body))
+          continue;
         for (const BodyId body : {frame.body, other.body}) {
           if (body != ground) found[at(body)] = 1;
         }

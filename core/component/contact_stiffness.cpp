@@ -22,11 +22,11 @@ std::optional<double> exponent_of(std::string_view unit, const ParameterBlock& l
 }
 
 /// Radius of the sphere on a plane that stands for the contact, and a depth at which it is looked at [m].
-struct Contact {
+struct TouchingSphere {
   double radius, depth;
 };
 
-Contact contact_of(const JointLayout& layout, double size) {
+TouchingSphere sphere_of(const JointLayout& layout, double size) {
   const double smaller = layout.smaller_radius, play = layout.clearance;
   if (smaller > 0.0 && play > 0.0) return {smaller * smaller / play, depth_by_clearance * play};
   const double radius = smaller > 0.0 ? smaller : size > 0.0 ? size : usual_size;
@@ -44,7 +44,7 @@ std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, con
       if (value == law->values.end() || !value->second.given || !(value->second.number > 0.0)) continue;
       const std::optional<double> exponent = exponent_of(parameter.unit, *law);
       if (!exponent) continue;
-      const Contact contact = contact_of(layout, size);
+      const TouchingSphere contact = sphere_of(layout, size);
       const double by_root = 0.75 * value->second.number * std::pow(contact.depth, *exponent - 1.5);
       const double modulus = by_root / std::sqrt(contact.radius);
       return ContactStiffness{parameter.name, fmt::format("N/m^{:g}", *exponent), value->second.number, modulus};
