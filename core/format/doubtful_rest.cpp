@@ -8,8 +8,6 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/motion_course.h"
-#include "format/parameter_scope.h"
-#include "model/time_function.h"
 
 namespace freeplay {
 namespace {
@@ -40,13 +38,8 @@ class RestDoubts {
       if (written) judge(*driver.table, {.written = *written, .is_load = is_load});
       return;
     }
-    const auto written = map.find("value");
-    if (!written) return;
-    if (driver.by_motion.empty()) {
-      judge({&driver.value, 1}, {.written = *written, .is_load = is_load});
-    } else {
-      judge(driver.in_time, {.written = *written, .is_load = is_load, .zero = false});
-    }
+    const bool plain = driver.by_motion.empty();
+    judge(map, "value", plain ? std::span(&driver.value, 1) : std::span(driver.in_time), is_load, plain);
   }
 
   void judge(const AppliedForce& force) const {
@@ -54,54 +47,23 @@ class RestDoubts {
     if (!entry) return;
     MapReader map(*entry, "force");
     map.follow(force.kind == ForceKind::torque ? "force torque" : "force force");
-    const auto written = map.find("value");
-    if (!written) return;
     const bool plain = force.by_motion.empty();
-    judge(plain ? force.value : force.in_time, {.written = *written, .is_load = true, .zero = plain});
+    judge(map, "value", plain ? force.value : force.in_time, true, plain);
   }
 
-  void judge(const InverseKinematics& entry) const {
-    std::vector<Expression> functions;
-    for (const std::optional<Expression>& function : entry.path.functions) {
-      if (function) functions.push_back(*function);
-    }
-    const auto driver = functions.empty() ? std::nullopt : map_of("drivers", entry.name);
-    const auto block = driver ? MapReader(*driver, "driver").find("inverse_kinematics") : std::nullopt;
-    const auto written = block ? MapReader(*block, "inverse_kinematics").find("path") : std::nullopt;
-    if (written) judge(functions, {.written = *written, .zero = false});
-  }
-
-  /// Parameters of a joint or of an entry of `forces`.
-  void judge(const JointElement& element) const {
-    if (!element.parameters) return;
-    std::optional<CheckedValue> entry;
-    std::size_t place = 0;
-    for (const Parameter& parameter : element.parameters->component->description.parameters) {
-      const std::string_view name = parameter.name;
-      std::vector<Expression> formulas;
-      bool whole = true;
-      const auto value = element.parameters->values.find(name);
-      if (const Expression* own =
-              value == element.parameters->values.end() ? nullptr : written_expression(value->second))
-        formulas.push_back(*own);
-      for (std::size_t i = 0; may_follow_motion(parameter) && i < element.parts.size(); ++i) {
-        if (element.parts[i].formula != place) continue;
-        formulas.push_back(element.in_time[i]);
-        whole = element.parts[i].whole;
-      }
-      if (may_follow_motion(parameter)) ++place;
-      if (formulas.empty()) continue;
-      if (!entry) entry = map_of(element.is_force ? "forces" : "joints", element.name);
-      const auto written = entry ? MapReader(*entry, Uses::presets).find(parameter.name) : std::nullopt;
-      const std::string unit = unit_text(parameter, *element.parameters);
-      if (written) judge(formulas, {.written = *written, .is_load = unit != "m" && unit != "rad", .zero = whole});
-    }
+  void judge(const Draft::Timed& timed) const {
+    judge(timed.parts, {.written = timed.written, .is_load = timed.is_load, .zero = timed.whole});
   }
 
  private:
   std::optional<CheckedValue> map_of(const char* section, const std::string& name) const {
     const auto entry = entry_of(draft_, section, name);
     return entry && entry->node().is_map() ? entry : std::nullopt;
+  }
+
+  void judge(MapReader& map, const char* key, std::span<const Expression> formulas, bool is_load, bool whole) const {
+    const auto written = map.find(key);
+    if (written) judge(formulas, {.written = *written, .is_load = is_load, .zero = whole});
   }
 
   double span() const { return settings_.end - settings_.start; }
@@ -191,8 +153,7 @@ void doubt_rests(const Draft& draft) {
     if (model.drivers[i].kinematics < 0) doubts.judge(model.drivers[i]);
   }
   for (std::size_t i = 0; i < std::min(model.forces.size(), most_formulas); ++i) doubts.judge(model.forces[i]);
-  for (std::size_t i = 0; i < std::min(model.kinematics.size(), most_formulas); ++i) doubts.judge(model.kinematics[i]);
-  for (std::size_t i = 0; i < std::min(model.joints.size(), most_formulas); ++i) doubts.judge(model.joints[i]);
+  for (std::size_t i = 0; i < std::min(draft.timed.size(), most_formulas); ++i) doubts.judge(draft.timed[i]);
 }
 
 }  // namespace freeplay

@@ -28,11 +28,7 @@ void MotionParameters::give(const ParameterBlock& block, const std::vector<Motio
     if (!may_follow_motion(parameter)) continue;
     const auto found = formulas_.find(std::string_view(parameter.name));
     if (found != formulas_.end()) {
-      const bool whole = !found->second.first.depends_on_variables();
-      for (Expression& part : found->second.first.time_parts()) {
-        element.in_time.push_back(std::move(part));
-        element.parts.push_back({element.by_motion.formulas.size(), whole});
-      }
+      for (Expression& part : found->second.first.time_parts()) element.in_time.push_back(std::move(part));
       element.by_motion.formulas.emplace_back(found->second.first);
       element.places.push_back(found->second.second);
     } else {

@@ -65,12 +65,6 @@ struct FormulaPlace {
 };
 
 /// A joint or a force between two markers; a gear has rows but no markers of its own.
-/// A part of one of several formulas that depends on time alone.
-struct TimePart {
-  std::size_t formula = 0;
-  bool whole = true;  ///< all of it
-};
-
 struct JointElement {
   std::string name;
   Location location;                     ///< of the entry
@@ -82,7 +76,6 @@ struct JointElement {
   MotionFormulas by_motion;          ///< of all its parameters that may depend on the motion, where one does
   std::vector<FormulaPlace> places;  ///< of these
   std::vector<Expression> in_time;   ///< parts of them that depend on time alone
-  std::vector<TimePart> parts;       ///< where these stand
   // The ideal twin of a joint with play; equal to the above for all others.
   const Component* ideal_component = nullptr;
   JointRef ideal;

@@ -13,14 +13,14 @@ namespace freeplay {
 /// first of them a rest counts as one, as where a pendulum is let go.
 class SlowMotion {
  public:
-  explicit SlowMotion(const System& system);
+  [[gnu::cold]] explicit SlowMotion(const System& system);  // these by size: few runs look for a period
 
   /// A step from t - dt to t, with the velocities of the unknowns at its ends.
-  void add(double t, double dt, std::span<const double> start, std::span<const double> end);
+  [[gnu::cold]] void add(double t, double dt, std::span<const double> start, std::span<const double> end);
 
   /// Of what still moves at t, with these velocities and accelerations: not what died out, nor what carried less than a
   /// hundredth of the energy.
-  Swing slowest(double t, std::span<const double> v, std::span<const double> a) const;
+  [[gnu::cold]] Swing slowest(double t, std::span<const double> v, std::span<const double> a) const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

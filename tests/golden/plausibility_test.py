@@ -160,7 +160,7 @@ MISTAKES = [
     (TRAIN, "drivers:", "forces: {hold: {type: brake, kind: rotational, between: [ground, two], limit: '5 N*m*smooth(t, 20 s, 21 s)', stiffness: 1e4}}\ndrivers:",
      "doubtful-time", "'5 N", "zero all the time"),
     (BOX, "simulation:", "drivers: {up: {inverse_kinematics: {frame: box, path: {y: '0.1*smooth(t, 200, 300)'}, joints: [guide]}}}\nsimulation:",
-     "doubtful-time", "{y", "at 200 s: write the unit"),
+     "doubtful-time", "'0.1", "at 200 s: write the unit"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 2 mm", "doubtful-clearance", "wrist", "times the smaller radius"),
     (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "the motor is on the slow side", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
