@@ -7,6 +7,7 @@
 
 #include "analysis/branches.h"
 #include "analysis/rows.h"
+#include "base/counted.h"
 #include "base/error.h"
 #include "base/index.h"
 #include "model/leg.h"
@@ -145,9 +146,10 @@ void RequestedStations::at_inputs() {
     const auto held = std::ranges::count_if(demand.inputs, [](const Jet& jet) { return !std::isnan(jet.value); });
     const int needed = mobility_ ? mobility_->general.freedoms - mobility_->general.held : freedoms_;
     if (held < needed) {
-      throw Error(
-          Error::Category::usage, "bad-value",
-          fmt::format("--input {} gives {} inputs, but the mechanism has {} freedoms", asked.words, held, needed));
+      throw Error(Error::Category::usage, "bad-value",
+                  fmt::format("--input {} gives {}, but the mechanism has {}", asked.words,
+                              counted(static_cast<std::size_t>(held), "input"),
+                              counted(static_cast<std::size_t>(needed), "freedom")));
     }
     demands.push_back(demand);
   }

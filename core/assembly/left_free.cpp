@@ -15,6 +15,8 @@ using Eigen::MatrixXd;
 
 namespace {
 
+constexpr double closes_within = 0.1;  // by the size of the model: given poses are guesses
+
 class FreeMotions {
  public:
   FreeMotions(const System& closed, const Evaluation& shut) : model_(closed.model()), closed_(closed), shut_(shut) {}
@@ -165,21 +167,26 @@ class FreeMotions {
                                [&](const AppliedForce& force) { return is_moving(body_of(force.marker)); });
   }
 
+  /// Adds the bodies that joints connect to those that are marked, not by way of ground.
+  void spread(std::vector<char>& reached) const {
+    for (bool more = true; std::exchange(more, false);) {
+      for (const JointElement& joint : model_.joints) {
+        const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+        if (a == ground || b == ground || reached[at(a)] == reached[at(b)]) continue;
+        reached[at(a)] = reached[at(b)] = 1;
+        more = true;
+      }
+    }
+  }
+
   /// Whether a torque or force of a driver reaches a moving body through joints: links in line with it move though
   /// the joint on which it acts stands still.
   template <class IsMoving>
   bool efforts_act_on(const IsMoving& is_moving) const {
     std::vector<char> reached(model_.bodies.size(), 0);
     for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = is_moving(static_cast<BodyId>(b)) ? 1 : 0;
+    spread(reached);
     const auto is_reached = [&](BodyId body) { return body != ground && reached[at(body)]; };
-    for (bool more = true; std::exchange(more, false);) {
-      for (const JointElement& joint : model_.joints) {
-        const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
-        if (a == ground || b == ground || is_reached(a) == is_reached(b)) continue;
-        reached[at(a)] = reached[at(b)] = 1;
-        more = true;
-      }
-    }
     return std::ranges::any_of(model_.drivers, [&](const Driver& driver) {
       const JointElement& joint = model_.joints[at(driver.joint)];
       return !prescribes(driver.kind) && (is_reached(body_of(joint.marker_a)) || is_reached(body_of(joint.marker_b)));
@@ -187,10 +194,10 @@ class FreeMotions {
   }
 
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
-  /// what springs alone hold, on a slide or free, or a spring about an axis. A pose may be a guess for a loop: it does
-  /// not count where some frame that a loop may have closed on is used by nothing, nor as a position without an angle
-  /// of a body on a pin, nor for a body that may turn about its own centre of mass unnoticed, as a slider without its
-  /// guide does.
+  /// what springs alone hold, on a slide or free, or a spring about an axis, and the pose of a body. As poses are also
+  /// guesses for loops, a position without an angle of a body on a pin is none, and that of a body which turns about
+  /// its own centre of mass unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any
+  /// pose of bodies that may_miss_a_joint().
   template <class IsMoving>
   std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
@@ -220,35 +227,71 @@ class FreeMotions {
       if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
     }
     const MatrixXd idle = idle_spins(given);
-    std::vector<int> candidates = moving_in(given, idle);
-    if (has_unused_frame(is_moving)) return candidates;
+    const std::vector<int> candidates = moving_in(given, idle);
+    const int width = closed_.layout().body_velocities();
+    const auto turns_unnoticed = [&](int b) { return idle.middleRows(width * b, width).squaredNorm(); };
     // Robots start as their file draws them.
     const auto of_robot = [&](int b) { return model_.bodies[at(b)].location.file != model_.file; };
+    const std::vector<char> guesses = may_miss_a_joint(is_moving);
     const auto posed = [&](int b) {
       const Body& body = model_.bodies[at(b)];
-      return body.angle || body.rotation || (body.position && !jointed[at(b)]) || of_robot(b);
+      return of_robot(b) || (!guesses[at(b)] && (body.angle || body.rotation || (body.position && !jointed[at(b)])));
     };
+    const double all_turns = (model_.space == Space::planar ? 1.0 : 3.0) - counts_as_motion;
+    const auto own_alone = [&](int b) { return !of_robot(b) && turns_unnoticed(b) > all_turns; };
     for (const int b : candidates) {
-      if (posed(b)) given = stacked(given, body_rates(b));
+      if (posed(b) && !own_alone(b)) given = stacked(given, body_rates(b));
     }
-    std::vector<int> unrestrained = moving_in(given, idle_spins(given));
-    const int width = closed_.layout().body_velocities();
+    const std::vector<int> moving = moving_in(given, idle_spins(given));
+    std::vector<int> unrestrained;
     for (const int b : candidates) {
-      const bool turns_unnoticed = idle.middleRows(width * b, width).norm() > counts_as_motion;
-      if (turns_unnoticed && !of_robot(b) && std::ranges::count(unrestrained, b) == 0) unrestrained.push_back(b);
+      if (posed(b)) continue;
+      if (std::ranges::count(moving, b) > 0 || turns_unnoticed(b) > counts_as_motion) unrestrained.push_back(b);
     }
-    std::ranges::sort(unrestrained);
     return unrestrained;
   }
 
-  /// Of a moving body or of ground: declared, and nothing stands on it.
+  /// Bodies that are joined to one of a pair, of which one moves, that no joint holds together though a frame which
+  /// nothing uses stands on one of them about where a frame of the other does: there a loop was to close.
   template <class IsMoving>
-  bool has_unused_frame(const IsMoving& is_moving) const {
-    return std::ranges::any_of(model_.frames, [&](const Marker& frame) {
-      if (frame.body != ground && !is_moving(frame.body)) return false;
-      if (frame.name.ends_with("/origin") || frame.name.ends_with("/com")) return false;
-      return std::ranges::none_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+  std::vector<char> may_miss_a_joint(const IsMoving& is_moving) const {
+    std::vector<char> found(model_.bodies.size(), 0);
+    const auto moves = [&](BodyId body) { return body != ground && is_moving(body); };
+    for (const Marker& frame : model_.frames) {
+      if (frame.name.ends_with("/origin") || frame.name.ends_with("/com") || is_used(frame)) continue;
+      const Eigen::Vector3d place = place_of(frame);
+      for (const Marker& other : model_.frames) {
+        if (frame.body == other.body || !(moves(frame.body) || moves(other.body)) || other.name.ends_with("/com"))
+          continue;
+        if ((place_of(other) - place).norm() > closes_within * closed_.size() || are_joined(frame.body, other.body))
+          continue;
+        for (const BodyId body : {frame.body, other.body}) {
+          if (body != ground) found[at(body)] = 1;
+        }
+      }
+    }
+    spread(found);
+    return found;
+  }
+
+  bool is_used(const Marker& frame) const {
+    return std::ranges::any_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+  }
+
+  bool are_joined(BodyId one, BodyId other) const {
+    return std::ranges::any_of(model_.joints, [&](const JointElement& joint) {
+      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+      return joint.gear < 0 && ((a == one && b == other) || (a == other && b == one));
     });
+  }
+
+  /// At the start.
+  Eigen::Vector3d place_of(const Marker& frame) const {
+    const Eigen::Vector3d in_body(frame.position.data());
+    if (frame.body == ground) return in_body;
+    const Pose pose = closed_.coordinates().frame_pose(frame.body, shut_.q);
+    return Eigen::Vector3d(pose.position) +
+           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation) * in_body;
   }
 
   const Model& model_;

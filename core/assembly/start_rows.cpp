@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "base/index.h"
 #include "linear/row_solutions.h"
 #include "system/path_row.h"
@@ -48,17 +49,15 @@ void check_paths(const System& closed, const Evaluation& e) {
     const int free = numerical_rank(without), prescribed = numerical_rank(with);
     if (prescribed < nv) {
       throw Error(Error::Category::input, "ik-underdetermined",
-                  fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom(s)", entry.name,
-                              nv - prescribed),
+                  fmt::format("with its frame on the path of '{}' the mechanism still has {}", entry.name,
+                              counted(at(nv - prescribed), "freedom")),
                   entry.frame_location);
     }
     if (prescribed < free + given) {
-      throw Error(
-          Error::Category::input, "ik-unreachable",
-          fmt::format(
-              "the frame of '{}' cannot follow {} component(s) of a path: the mechanism leaves it {} freedom(s)",
-              entry.name, given, prescribed - free),
-          entry.path_location);
+      throw Error(Error::Category::input, "ik-unreachable",
+                  fmt::format("the frame of '{}' cannot follow {} of a path: the mechanism leaves it {}", entry.name,
+                              counted(at(given), "component"), counted(at(prescribed - free), "freedom")),
+                  entry.path_location);
     }
   }
 }

@@ -8,7 +8,8 @@
 namespace freeplay {
 namespace {
 
-constexpr double depth_by_clearance = 0.1;
+constexpr double depth_by_clearance = 0.1, depth_by_radius = 1e-3;
+constexpr double usual_size = 0.1;  // [m]; limits ten times beyond all materials hold from 1 mm to 10 m
 
 /// The exponent n of a unit N/m^n, which may be named by another parameter; nothing for other units.
 std::optional<double> exponent_of(std::string_view unit, const ParameterBlock& law) {
@@ -20,10 +21,21 @@ std::optional<double> exponent_of(std::string_view unit, const ParameterBlock& l
   return found->second.number;
 }
 
+/// Radius of the sphere on a plane that stands for the contact, and a depth at which it is looked at [m].
+struct TouchingSphere {
+  double radius, depth;
+};
+
+TouchingSphere sphere_of(const JointLayout& layout, double size) {
+  const double smaller = layout.smaller_radius, play = layout.clearance;
+  if (smaller > 0.0 && play > 0.0) return {smaller * smaller / play, depth_by_clearance * play};
+  const double radius = smaller > 0.0 ? smaller : size > 0.0 ? size : usual_size;
+  return {radius, depth_by_radius * radius};
+}
+
 }  // namespace
 
-std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, const JointLayout& layout) {
-  if (!(layout.clearance > 0.0) || !(layout.smaller_radius > 0.0)) return std::nullopt;
+std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, const JointLayout& layout, double size) {
   for (const auto& [key, entry] : block.values) {
     const ParameterBlock* law = entry.law.get();
     if (law == nullptr || law->component->kind != ComponentKind::contact_law) continue;
@@ -32,10 +44,9 @@ std::optional<ContactStiffness> given_stiffness(const ParameterBlock& block, con
       if (value == law->values.end() || !value->second.given || !(value->second.number > 0.0)) continue;
       const std::optional<double> exponent = exponent_of(parameter.unit, *law);
       if (!exponent) continue;
-      const double depth = depth_by_clearance * layout.clearance;
-      // K delta^n / (4/3 delta^1.5), and the root of R = R_j^2/c is R_j/sqrt(c).
-      const double by_root = 0.75 * value->second.number * std::pow(depth, *exponent - 1.5);
-      const double modulus = by_root * std::sqrt(layout.clearance) / layout.smaller_radius;
+      const TouchingSphere contact = sphere_of(layout, size);
+      const double by_root = 0.75 * value->second.number * std::pow(contact.depth, *exponent - 1.5);
+      const double modulus = by_root / std::sqrt(contact.radius);
       return ContactStiffness{parameter.name, fmt::format("N/m^{:g}", *exponent), value->second.number, modulus};
     }
   }

@@ -147,7 +147,7 @@ void read_analysis(Draft& draft, const CheckedValue& section) {
     analysis.elbow = read_elbow(*elbow, count).value_or(std::vector<int>{});
   }
   if (path) {
-    const auto components = read_path(draft, *path);
+    const auto components = read_path(draft, *path, false);
     analysis.path_location = path->location();
     if (components) analysis.path = *components;
   }

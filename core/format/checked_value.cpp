@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "format/parameter_scope.h"
@@ -239,7 +240,7 @@ std::optional<std::vector<CheckedValue>> CheckedValue::list(std::size_t length) 
     return std::nullopt;
   }
   if (node_->items.size() == length) return list();
-  fail("wrong-length", fmt::format("'{}' must have {} items, not {}", path_, length, node_->items.size()));
+  fail("wrong-length", fmt::format("'{}' must have {}, not {}", path_, counted(length, "item"), node_->items.size()));
   return std::nullopt;
 }
 

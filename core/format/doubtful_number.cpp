@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "component/contact_stiffness.h"
 #include "format/parameter_scope.h"
 
 namespace freeplay {
@@ -35,6 +36,9 @@ constexpr UsualRange usual_ranges[] = {
     {"rad/s", " vs ", 1e-7, 1e3, 1e-7, "friction is smoothed over 1e-7 to 1000 rad/s"},
     {"kg/m^3", "", 1.0, 3e4, 1.0, "densities go from 1 (aerogel) to 22590 kg/m^3 (osmium)"},
 };
+
+// Moduli of the bodies that a contact is as stiff as: a tenth of soft rubber's, ten times diamond's.
+constexpr double softest_contact = 1e5, hardest_contact = 1.2e13;  // [Pa]
 
 constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are simulated
 constexpr double earth_gravity = 9.81;       // [m/s^2], within 3 %: 9.78 to 9.83 on the ground, 10 in schools
@@ -291,6 +295,18 @@ void doubt_parameters(const ParameterBlock& block, const std::map<std::string, C
       doubt_range(written, unit, number);
     }
   }
+}
+
+void doubt_contact_stiffness(const CheckedValue& entry, const ParameterBlock& block, const JointLayout& layout,
+                             double scale) {
+  const auto stiffness = given_stiffness(block, layout, scale);
+  if (!stiffness) return;
+  if (stiffness->modulus >= softest_contact && stiffness->modulus <= hardest_contact) return;
+  entry.warn_at_key(
+      "doubtful-value",
+      fmt::format("{} of '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go from 1 MPa (rubber) to "
+                  "1200 GPa (diamond); check the number and its unit",
+                  stiffness->name, entry.key(), stiffness->value, stiffness->unit, stiffness->modulus));
 }
 
 }  // namespace freeplay

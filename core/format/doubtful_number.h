@@ -58,4 +58,8 @@ void doubt_interval(const CheckedValue& written, double interval, double span);
 void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale,
                       double most_lengths = bare_limit::length);
 
+/// `doubtful-value`: the stiffness that a contact law of the entry is given, as of no material.
+void doubt_contact_stiffness(const CheckedValue& entry, const ParameterBlock& block, const JointLayout& layout,
+                             double scale);
+
 }  // namespace freeplay

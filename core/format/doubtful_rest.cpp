@@ -16,10 +16,10 @@ constexpr std::size_t most_formulas = 2000;   // that are looked at
 constexpr double later[] = {10.0, 1e3, 1e6};  // runs in which what rests may begin
 constexpr double inside = 1.0 - 1e-9;         // part of the run: what begins at its very end does so after it
 
-/// One entry of `drivers` or `forces` whose formulas or table depend on time.
+/// What is written of formulas, or a table, that depend on time.
 struct Waiting {
   CheckedValue written;
-  bool is_load = false;  ///< a force, torque or effort: zero is nothing at all
+  bool is_load = false;  ///< a force, torque, effort or what makes one: zero is nothing at all
   bool zero = true;      ///< in the whole run
   double begins = unbounded;
 };
@@ -38,13 +38,8 @@ class RestDoubts {
       if (written) judge(*driver.table, {.written = *written, .is_load = is_load});
       return;
     }
-    const auto written = map.find("value");
-    if (!written) return;
-    if (driver.by_motion.empty()) {
-      judge({&driver.value, 1}, {.written = *written, .is_load = is_load});
-    } else {
-      judge(driver.in_time, {.written = *written, .is_load = is_load, .zero = false});
-    }
+    const bool plain = driver.by_motion.empty();
+    judge(map, "value", plain ? std::span(&driver.value, 1) : std::span(driver.in_time), is_load, plain);
   }
 
   void judge(const AppliedForce& force) const {
@@ -52,16 +47,23 @@ class RestDoubts {
     if (!entry) return;
     MapReader map(*entry, "force");
     map.follow(force.kind == ForceKind::torque ? "force torque" : "force force");
-    const auto written = map.find("value");
-    if (!written) return;
     const bool plain = force.by_motion.empty();
-    judge(plain ? force.value : force.in_time, {.written = *written, .is_load = true, .zero = plain});
+    judge(map, "value", plain ? force.value : force.in_time, true, plain);
+  }
+
+  void judge(const Draft::Timed& timed) const {
+    judge(timed.parts, {.written = timed.written, .is_load = timed.is_load, .zero = timed.whole});
   }
 
  private:
   std::optional<CheckedValue> map_of(const char* section, const std::string& name) const {
     const auto entry = entry_of(draft_, section, name);
     return entry && entry->node().is_map() ? entry : std::nullopt;
+  }
+
+  void judge(MapReader& map, const char* key, std::span<const Expression> formulas, bool is_load, bool whole) const {
+    const auto written = map.find(key);
+    if (written) judge(formulas, {.written = *written, .is_load = is_load, .zero = whole});
   }
 
   double span() const { return settings_.end - settings_.start; }
@@ -151,6 +153,7 @@ void doubt_rests(const Draft& draft) {
     if (model.drivers[i].kinematics < 0) doubts.judge(model.drivers[i]);
   }
   for (std::size_t i = 0; i < std::min(model.forces.size(), most_formulas); ++i) doubts.judge(model.forces[i]);
+  for (std::size_t i = 0; i < std::min(draft.timed.size(), most_formulas); ++i) doubts.judge(draft.timed[i]);
 }
 
 }  // namespace freeplay

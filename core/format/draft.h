@@ -64,6 +64,13 @@ struct Draft {
     const Node* value = nullptr;
     const Reading* reading = nullptr;
   };
+  /// A parameter or a part of a path that depends on time, for doubt_rests().
+  struct Timed {
+    CheckedValue written;
+    std::vector<Expression> parts;  ///< that depend on time alone
+    bool is_load, whole;            ///< whether it makes forces, and the part is all of it
+  };
+  std::vector<Timed> timed;
   double length_scale = 0.0;                      ///< freeplay::length_scale(), from when all frames are known on [m]
   std::unordered_map<std::string, Frame> frames;  ///< by BODY/FRAME
   std::unordered_map<std::string, int> markers;   ///< index into model.markers by BODY/FRAME

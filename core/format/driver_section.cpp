@@ -222,7 +222,7 @@ class DriverEntry {
     }
     InverseKinematics kinematics;
     const std::optional<int> marker = frame ? draft_.marker(*frame, part_) : std::nullopt;
-    const auto components = path ? read_path(draft_, *path) : std::nullopt;
+    const auto components = path ? read_path(draft_, *path, true) : std::nullopt;
     const auto driven = joints ? draft_.joint_list(*joints, part_) : std::nullopt;
     const std::size_t count = driven ? driven->size() : 0;
     const auto modes = elbow && driven ? read_elbow(*elbow, count) : std::vector<int>(count, 1);

@@ -55,7 +55,11 @@ class GearEntry {
     gear.ratio = number.value_or(1.0);
     draft_.model.joints[static_cast<std::size_t>(joint_)].gear = static_cast<int>(draft_.model.gears.size());
     draft_.model.gears.push_back(gear);
-    if (play.block) loosen(draft_, gear, play, entry_);
+    if (play.block) {
+      loosen(draft_, gear, play, entry_);
+      const JointLayout& layout = draft_.model.joints[static_cast<std::size_t>(joint_)].layout;
+      doubt_contact_stiffness(entry_, *play.block, layout, draft_.length_scale);
+    }
     if (teeth && loose == nullptr && number && gear.ratio != 0.0) give_teeth(draft_, *teeth, gear);
   }
 

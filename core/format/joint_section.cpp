@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "base/name_pattern.h"
-#include "component/contact_stiffness.h"
 #include "component/declared.h"
 #include "format/doubtful_number.h"
 #include "format/gear.h"
@@ -23,8 +22,6 @@ namespace {
 // by 10 nm.
 constexpr double widest_play = 0.15;     // in smaller radii
 constexpr double narrowest_play = 1e-8;  // [m]
-// Moduli of the bodies that a contact is as stiff as: a tenth of soft rubber's, ten times diamond's.
-constexpr double softest = 1e5, hardest = 1.2e13;  // [Pa]
 
 bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
 
@@ -225,6 +222,7 @@ class JointEntry {
     element().has_play = play;
     if (twins) doubt_play(layout);
     if (twins && parameters.block) doubt_inside(parameters, layout);
+    if (parameters.block) doubt_contact_stiffness(entry_, *parameters.block, layout, draft_.length_scale);
     draft_.joint_usable[index_] = usable && known_;
   }
 
@@ -239,6 +237,7 @@ class JointEntry {
     if (!make_chain(draft_, *component_, parameters, which, entry_, index_)) return;
     doubt_play(element().layout);
     doubt_inside(parameters, element().layout);
+    doubt_contact_stiffness(entry_, *parameters.block, element().layout, draft_.length_scale);
   }
 
   void doubt_play(const JointLayout& layout) {
@@ -257,7 +256,7 @@ class JointEntry {
                                                          entry_.key(), layout.clearance, against));
   }
 
-  /// Plays of a bearing that are longer than everything else of it, and stiffnesses of no material.
+  /// Plays of a bearing that are longer than everything else of it.
   void doubt_inside(const CheckedParameters& parameters, const JointLayout& layout) {
     double longest = 0.0;
     const auto is_play = [](const std::string& path) { return path.ends_with("clearance"); };
@@ -283,15 +282,6 @@ class JointEntry {
                       "the number and its unit",
                       place->second.path(), value, longest));
     });
-    const auto stiffness = given_stiffness(*parameters.block, layout);
-    if (!stiffness) return;
-    const bool soft = stiffness->modulus<softest, hard = stiffness->modulus> hardest;
-    if (!soft && !hard) return;
-    entry_.warn_at_key(
-        "doubtful-value",
-        fmt::format("{} of joint '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go "
-                    "from 1 MPa (rubber) to 1200 GPa (diamond); check the number and its unit",
-                    stiffness->name, entry_.key(), stiffness->value, stiffness->unit, stiffness->modulus));
   }
 
   Draft& draft_;

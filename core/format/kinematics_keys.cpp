@@ -27,7 +27,7 @@ std::string any_of_words(std::span<const char* const> words) {
 
 }  // namespace
 
-std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value) {
+std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value, bool in_run) {
   if (!value.node().is_scalar() && !value.node().is_map()) {
     value.wrong_type("the path of a file or a map");
     return std::nullopt;
@@ -52,6 +52,7 @@ std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value) {
     if (!component) continue;
     path.functions[i] = component->time_function(i < (in_space ? 3U : 2U) ? dimension::length : dimension::angle);
     path.text[i] = component->node().text;
+    if (in_run && path.functions[i]) draft.timed.push_back({*component, path.functions[i]->time_parts(), false, false});
     good = good && path.functions[i].has_value();
   }
   if (in_space) {

@@ -225,6 +225,7 @@ class ParameterCheck {
       const auto formula = written.varying(unit.dimension, range_of(parameter, unit), motion_->names());
       if (!formula) return false;
       if (formula->depends_on_time() || formula->depends_on_variables()) {
+        note_time(unit, written, *formula);
         motion_->take(parameter, *formula, written, value);
       } else {
         value.number = formula->constant().value;
@@ -261,11 +262,17 @@ class ParameterCheck {
     return vector.has_value();
   }
 
+  void note_time(const Unit& unit, const CheckedValue& written, const Expression& formula) {
+    const bool is_motion = unit.dimension == dimension::length || unit.dimension == dimension::angle;
+    draft_.timed.push_back({written, formula.time_parts(), !is_motion, !formula.depends_on_variables()});
+  }
+
   bool read_function(const Parameter& parameter, const Unit& unit, const CheckedValue& written, ParameterValue& value) {
     const bool by_motion = motion_ != nullptr && may_follow_motion(parameter);
     std::optional<Expression> expression =
         written.time_function(unit.dimension, 2, by_motion ? &motion_->names() : nullptr);
     if (!expression) return false;
+    note_time(unit, written, *expression);
     if (expression->depends_on_variables()) {
       motion_->take(parameter, std::move(*expression), written, value);
       return true;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "base/counted.h"
 #include "base/input_text.h"
 #include "results/reader.h"
 
@@ -79,7 +80,7 @@ double number(std::string_view field, const std::string& file, int line) {
 
 void require_fields(std::size_t fields, std::size_t names, const std::string& file, int line) {
   if (fields == names) return;
-  unreadable_result(file, fmt::format("line {} has {} fields, the header {}", line, fields, names), line);
+  unreadable_result(file, fmt::format("line {} has {}, the header {}", line, counted(fields, "field"), names), line);
 }
 
 double index_of(std::string_view word, std::vector<std::string>& words) {

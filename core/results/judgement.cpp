@@ -355,6 +355,18 @@ void judge_instant(const Settings& settings, double window, Verdict& verdict) {
                .limit = shortest_window * settings.discard});
 }
 
+bool judge_period(double window, double period, const std::string& element, Verdict& verdict) {
+  if (window >= period * whole_period) return false;
+  verdict.add({.id = "statistics-window",
+               .level = Trust::doubtful,
+               .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of {}", window,
+                                      period, element),
+               .element = element,
+               .value = window,
+               .limit = period});
+  return true;
+}
+
 void judge_window(const RunRecord& record, Verdict& verdict) {
   const Settings& settings = record.model.settings;
   const double from = settings.start + settings.discard, window = record.outcome.time - from;
@@ -379,20 +391,18 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
                  .limit = fewest});
     return;
   }
-  const auto [slowest, longest] = slowest_driver(record.model, from);
-  if (slowest != nullptr) {
-    if (window >= longest * whole_period) return;
-    verdict.add({.id = "statistics-window",
-                 .level = Trust::doubtful,
-                 .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of driver '{}'",
-                                        window, longest, slowest->name),
-                 .element = fmt::format("driver '{}'", slowest->name),
-                 .value = window,
-                 .limit = longest});
+  const SlowestDriver slowest = slowest_driver(record.model, from);
+  if (slowest.driver != nullptr) {
+    judge_period(window, slowest.period, fmt::format("driver '{}'", slowest.driver->name), verdict);
     return;
   }
   if (settings.discard > 0.0 && window < shortest_window * settings.discard)
     return judge_instant(settings, window, verdict);
+  const Swing& swing = record.outcome.slowest;
+  if (swing.body >= 0) {
+    const std::string& body = record.model.bodies[at(swing.body)].name;
+    if (judge_period(window, swing.period, fmt::format("body '{}'", body), verdict)) return;
+  }
   // Without a period what was left out at the start says that a lasting state is looked for.
   const auto impacts = static_cast<double>(record.statistics.contacts());
   if (settings.discard == 0.0 || record.statistics.contacts_total() == 0 || impacts >= fewest_impacts) return;

@@ -71,7 +71,8 @@ std::string misfit_of_rows(const fs::path& file, const Json& count, const Json& 
   const std::int64_t counted = count.is_number_integer() ? count.get<std::int64_t>() : rows;
   // Without a fingerprint a file may hold more: another one could not be written.
   if (digits.is_string() ? rows != counted : rows < counted) {
-    return fmt::format("'{}' has {} rows, and its summary counts {}", file.string(), rows, counted);
+    return fmt::format("'{}' has {} row{}, and its summary counts {}", file.string(), rows, rows == 1 ? "" : "s",
+                       counted);
   }
   if (!digits.is_string() || hash.digits() == digits.get<std::string>()) return {};
   return fmt::format("'{}' was changed: its rows are not those that its summary has the fingerprint of", file.string());

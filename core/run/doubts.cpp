@@ -43,7 +43,11 @@ RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
       recorder_(recorder),
       joint_warnings_(run.model.joints.size()),
       motion_(run.system),
-      blows_(run.system) {
+      blows_(run.system),
+      slow_(run.system) {
+  const auto& drivers = run.model.drivers;
+  swings_ = run.settings.discard > 0.0 &&
+            std::ranges::none_of(drivers, [](const Driver& driver) { return prescribes(driver.kind); });
   std::size_t values = 0;
   for (int j = 0; j < static_cast<int>(run.model.joints.size()); ++j) {
     joint_warnings_[at(j)].values = values;
@@ -53,14 +57,14 @@ RunDoubts::RunDoubts(RunContext& run, RunFailure& failure, Recorder& recorder)
 }
 
 void RunDoubts::save(ArchiveWriter& archive) const {
-  archive(warning_values_, torn_from_, motion_, blows_);
+  archive(warning_values_, torn_from_, motion_, blows_, slow_);
   for (const Warning& warning : joint_warnings_) {
     archive(warning.text != nullptr, std::string(warning.text != nullptr ? warning.text : ""), warning.time);
   }
 }
 
 void RunDoubts::restore(ArchiveReader& archive) {
-  archive(warning_values_, torn_from_, motion_, blows_);
+  archive(warning_values_, torn_from_, motion_, blows_, slow_);
   warning_texts_.resize(joint_warnings_.size());
   for (std::size_t j = 0; j < joint_warnings_.size(); ++j) {
     bool warned = false;
@@ -70,12 +74,15 @@ void RunDoubts::restore(ArchiveReader& archive) {
 }
 
 void RunDoubts::note_motion() {
+  const double t = run_.trial.t(), dt = t - run_.accepted.t();
+  if (swings_) slow_.add(t, dt, run_.accepted.v(), run_.trial.v());
   if (run_.adaptive) return;
-  motion_.add(run_.trial.t(), run_.trial.t() - run_.accepted.t(), run_.accepted.a(), run_.trial.a(), run_.trial.v());
+  motion_.add(t, dt, run_.accepted.a(), run_.trial.a(), run_.trial.v());
   blows_.add(run_.e_trial);
 }
 
-void RunDoubts::note_fast_motion() {
+void RunDoubts::judge_motion() {
+  if (swings_) run_.outcome.slowest = slow_.slowest(run_.outcome.time, run_.accepted.v(), run_.accepted.a());
   const FastMotion::Fewest fewest = motion_.fewest();
   const double time = run_.outcome.time - run_.settings.start, size = run_.system.size();
   if (!(fewest.steps < fewest_steps_in_period) || !(time > 0.0)) return;

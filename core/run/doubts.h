@@ -8,6 +8,7 @@
 #include "run/fast_motion.h"
 #include "run/lasting_blows.h"
 #include "run/recorder.h"
+#include "run/slow_motion.h"
 
 namespace freeplay {
 
@@ -19,7 +20,7 @@ class RunDoubts {
   void note_event_directions();
   /// Forces at the start, to which later ones are compared.
   void note_first_forces();
-  /// Of a step of one size that is about to be accepted: how fast what moves does so.
+  /// Of a step that is about to be accepted: how fast what moves does so, in steps of one size, and how slowly.
   void note_motion();
   /// After an accepted step of the length dt: false, with the outcome, where going on makes no sense.
   bool watch_row(double dt);
@@ -27,7 +28,7 @@ class RunDoubts {
   /// Once the run is over: warnings of joints, and play that was never used.
   void format_warnings();
   void note_unused_play();
-  void note_fast_motion();
+  void judge_motion();
   void note_lasting_blows();
 
   void save(ArchiveWriter& archive) const;
@@ -52,6 +53,8 @@ class RunDoubts {
   std::optional<double> torn_from_;
   FastMotion motion_;   // in steps of one size
   LastingBlows blows_;  // likewise
+  SlowMotion slow_;
+  bool swings_ = false;  // whether the run looks for a period
 };
 
 }  // namespace freeplay

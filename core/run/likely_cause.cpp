@@ -105,8 +105,8 @@ void suspect_materials(const System& system, Suspects& suspects) {
     };
     suspects.add(softest / modulus, [&] { return text("softer than rubber; is a prefix such as GPa missing"); });
     suspects.add(modulus / stiffest, [&] { return text("stiffer than diamond; is a unit given twice"); });
-    if (!joint.parameters || !joint.has_play) continue;
-    const auto given = given_stiffness(*joint.parameters, layout);
+    if (!joint.parameters || !(joint.has_play || joint.is_force)) continue;
+    const auto given = given_stiffness(*joint.parameters, layout, system.size());
     if (!given) continue;
     const auto words = [&](const char* what) {
       return fmt::format("{} of joint '{}' is {:.3g} {}: {}", given->name, joint.name, given->value, given->unit, what);

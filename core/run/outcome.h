@@ -10,6 +10,12 @@ namespace freeplay {
 
 enum class RunStatus { completed, stopped, failed, interrupted };
 
+/// What moves to and fro by itself, and how long it takes.
+struct Swing {
+  int body = -1;
+  double period = 0.0;  ///< [s]
+};
+
 /// How a run ended. A failed run keeps everything up to the last accepted step.
 struct Outcome {
   RunStatus status = RunStatus::completed;
@@ -19,6 +25,7 @@ struct Outcome {
   double wall_seconds = 0.0;  ///< from the assembled start to the last accepted step
   double smallest_step = 0.0, largest_step = 0.0;  ///< of the accepted ones [s]; 0 where there are none
   long steps = 0, rejected = 0, iterations = 0, factorizations = 0, rows = 0, events = 0;
+  Swing slowest{};                    ///< looked for where `discard` leaves out the start and no driver prescribes
   std::vector<TrustReason> doubts{};  ///< what the loop itself found against its numbers
 };
 

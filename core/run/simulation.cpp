@@ -125,7 +125,7 @@ const Outcome& Simulation::Impl::finish() {
   outcome.factorizations = context.solver.factorizations();
   doubts.format_warnings();
   doubts.note_unused_play();
-  doubts.note_fast_motion();
+  doubts.judge_motion();
   doubts.note_lasting_blows();
   adaptive.doubt_steps();
   failure.explain_failure();

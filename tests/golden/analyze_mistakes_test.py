@@ -106,7 +106,7 @@ class AnalyzeMistakes(AnalyzeTest):
                 (("error", model, "--elbow", "2", "--pose", "0,0,0"), 2, "1 or -1"),
                 (("error", model, "--elbow", "1,1", "--pose", "0,0,0"), 2, "2 values, but 3 joints"),
                 (("error", model, "--input", "leg1.a=1"), 2, "did you mean 'leg1.A'?"),
-                (("error", model, "--input", "leg1.A=1"), 2, "gives 1 inputs, but the mechanism has 3 freedoms"),
+                (("error", model, "--input", "leg1.A=1"), 2, "gives 1 input, but the mechanism has 3 freedoms"),
                 (("error", model, "--frame", "platfrom", "--pose", "0,0,0"), 2, "did you mean 'platform'?"),
                 (("error", model, "--frame", "ground", "--pose", "0,0,0"), 3, "is on ground"),
                 (("ik", model, "--samples", "9"), 2, "--samples is for error, not for ik"),

@@ -96,6 +96,25 @@ class OpenContacts(ProgramTest):
             with self.subTest(text):
                 self.assertEqual([], self.depth(text))
 
+    def test_a_stiffness_of_no_material_is_doubted(self):
+        """Steel has K = 4/3 E* sqrt(R), 1e10 to 1e11 N/m^1.5 here: a mistake in its unit makes a thousand times as much, or a millionth."""
+        stop = FALL % "type: joint-stop, between: [ground/up, roller], lower: -20 mm, upper: 200 mm"  # no frames: nothing says how large it is
+        cases = [(TEETH, "mesh"), (LID.replace("[lid/edge]%s", "[lid/edge]"), "stop"), (DISC, "hit"), (CURVE, "hit"), (CAM, "roll"), (stop, "hit")]
+        for text, name in cases:
+            for given, doubted in (("5e10", False), ("5e13", True), ("5e16", True), ("5e3", True), ("1e7", False)):
+                with self.subTest(text=text, K=given):
+                    found = self.doubts(text % given)
+                    self.assertEqual(["doubtful-value"] if doubted else [], [m["id"] for m in found], found)
+                    if not doubted:
+                        continue
+                    self.assertIn(f"K of '{name}' is {float(given):.4g} N/m^1.5, as of bodies with a modulus of ", found[0]["message"])
+                    self.assertTrue((text % given).splitlines()[found[0]["line"] - 1].startswith(f"  {name}: "), found)
+
+    def doubts(self, text):
+        self.write("m.yaml", text)
+        found = json.loads(self.freeplay("validate", "m.yaml", "--json")[0])["messages"]
+        return [m for m in found if m["severity"] == "warning"]
+
 
 if __name__ == "__main__":
     unittest.main()

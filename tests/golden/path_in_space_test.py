@@ -301,7 +301,7 @@ class Mistakes(PathTest):
     def test_a_path_that_leaves_freedoms_or_asks_for_too_many_is_refused(self):
         error = self.refused("{x: 0, y: 0, z: 0.5 m}")
         self.assertEqual("ik-underdetermined", error["id"])
-        self.assertIn("still has 3 freedom(s)", error["message"])
+        self.assertIn("still has 3 freedoms", error["message"])
         error = self.refused("{x: 0, y: 0, z: -0.5 m, roll: 0, pitch: 0, yaw: 0}", name="delta")
         self.assertEqual("ik-unreachable", error["id"])
         self.assertEqual("assembly-failed", self.refused("{x: 2 m, y: 0, z: -0.5 m}", name="delta")["id"])

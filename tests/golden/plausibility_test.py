@@ -97,11 +97,9 @@ MISTAKES = [
     (ROD, "[1e-5, 0.0208, 0.0208]", "[0.0208, 1.5e-3, 0.0208]", INERTIA, "[0.0208", "Ixx, Iyy, Izz"),
     (CRANK, GUIDE, "", "left-free", "slider", "no start is given for 'slider'", {"coupler: {": "coupler: {pose: {angle: 0.3}, "}),
     (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler', 'slider'", {"slider: {": "slider: {pose: {position: [0.14, 0]}, "}),
-    (CRANK, GUIDE, "", "left-free", "slider", "no start is given for 'slider'", {"slider: {": "slider: {pose: {position: [0.14, 0], angle: 0}, "}),
+    (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler'", {"slider: {": "slider: {pose: {position: [0.14, 0], angle: 0}, "}),
     (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler', 'slider'",
      {"slider: {": "slider: {pose: {position: [0.14, 0]}, com: [0, 0.01], "}),
-    (CART, "tip: [0.3, 0]", "tip: [0.3, 0], shoe: [0.3, 0.1]", "left-free", "pole", "no start is given",
-     {"pole: {": "pole: {pose: {angle: 0.2}, ", "initial: {joints: {hinge: -1.2}}\n": ""}),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e3", VALUE, "wrist", "rubber"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 20}", VALUE, "20}", "coefficients of friction"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 0.0005\n      initial: {eccentricity: [0.002, 0]}",
@@ -158,6 +156,14 @@ MISTAKES = [
     (CRANK, "forces:\n", "forces:\n  push: {type: force, at: slider, value: ['-2 N*smooth(t, 0.2, 0.4)', 0]}\n", "doubtful-time", "['-2", "at 0.2 s, so that it is zero all the time: write the unit"),
     (CRANK, "forces:\n", "forces:\n  turn: {type: torque, on: crank, value: '2 N*m*smooth(t, 0.2 s, 0.4 s)'}\n", "doubtful-time", "'2 N", "zero all the time: check its times"),
     (CART, "kind: position, value: 0.1*sin(3*t)", "kind: force, table: {points: [[5, 0], [6, 10], [8, 0]]}", "doubtful-time", "{points", "at 5 s, so that it is zero"),
+    (BOX, "stiffness: 2e4", "stiffness: '2e4 + 1e4*smooth(t, 20, 30)'", "doubtful-time", "'2e4", "at 20 s: write the unit"),
+    (BOX, "stiffness: 2e4", "stiffness: '2e4 + 1e4*smooth(t, 20, 30)*sin(body.box.y/(1 m))'", "doubtful-time", "'2e4", "at 20 s: write the unit"),
+    (BOX, "damping: 100", "damping: '10 N*s/m*smooth(t, 20 s, 30 s)'", "doubtful-time", "'10 N", "zero all the time: check its times"),
+    (BOX, "stiffness: 2e4", "preload: '-50 N*sin(t/(1 s))', stiffness: '2e4 N/m*smooth(t, 20 s, 30 s)'", "doubtful-time", "'2e4", "zero all the time"),
+    (TRAIN, "drivers:", "forces: {hold: {type: brake, kind: rotational, between: [ground, two], limit: '5 N*m*smooth(t, 20 s, 21 s)', stiffness: 1e4}}\ndrivers:",
+     "doubtful-time", "'5 N", "zero all the time"),
+    (BOX, "simulation:", "drivers: {up: {inverse_kinematics: {frame: box, path: {y: '0.1*smooth(t, 200, 300)'}, joints: [guide]}}}\nsimulation:",
+     "doubtful-time", "'0.1", "at 200 s: write the unit"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 2 mm", "doubtful-clearance", "wrist", "times the smaller radius"),
     (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "the motor is on the slow side", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
@@ -217,6 +223,9 @@ SOUND = [
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 1 mm"),
     (CRANK, "forces:\n", "forces:\n  none: {type: torque, on: slider, value: 0}\n"),
     (CRANK, "forces:\n", "forces:\n  push: {type: force, at: slider, value: ['-2 N*smooth(t, 10 ms, 15 ms)', 0]}\n"),
+    (BOX, "stiffness: 2e4", "stiffness: '2e4 N/m + 1e4 N/m*smooth(t, 20 s, 30 s)'"),
+    (BOX, "stiffness: 2e4, damping: 100", "stiffness: '2e4 + 1e4*smooth(t, 10 ms, 20 ms)', damping: '10*sin(t)^2'"),
+    (BOX, "stiffness: 2e4", "stiffness: '2e4 + 1e4*smooth(t, 0.01, 0.02)*sin(body.box.y/(1 m))'"),
     (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 0.001, 0.009)*(1 - smooth(t, 0.009, 0.019))'}}"),
     (TRAIN, "ratio: 2", "ratio: 1/2000", "", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "kind: velocity, value: 10", "kind: velocity, value: 200000 rpm", "", {"step: 1e-3": "accuracy: 1 um"}),
@@ -299,6 +308,32 @@ class Plausibility(ProgramTest):
                 for part, instead in more[1].items() if len(more) > 1 else ():
                     text = text_of(text, part, instead)
                 self.assertEqual([], self.messages(text))
+
+    def test_a_start_that_is_given_is_meant(self):
+        """A pose with its angle says where a body begins; a frame that a loop was to close on makes a guess of it."""
+        hanging = text_of(CART, "initial: {joints: {hinge: -1.2}}\n", "").replace("pole: {", "pole: {pose: {angle: 0.2}, ")
+        stone = "bodies:\n  stone: {mass: 1, inertia: 1e-3, pose: {position: [1, 1]%s}}"
+        disc = "bodies:\n  disc: {mass: 1, inertia: 1e-3%s}"
+        axle = "joints:\n  axle: {type: revolute, between: [pole/tip, disc]}"
+        bar = "bodies:\n  bar: {mass: 1, inertia: 1e-2, frames: {end: [0.3, 0]}, pose: {position: [%s, 0.06], angle: 2}}"
+        foot = "joints:\n  foot: {type: revolute, between: [ground/post, bar/end]}"
+        base = {"simulation:": "frames: {ground/post: [0.17, 0.33]}\nsimulation:", "joints:": foot}
+        for changes, wanted in [
+                ({}, []),
+                ({"tip: [0.3, 0]": "tip: [0.3, 0], shoe: [0.3, 0.1]"}, ["unused"]),
+                ({"bodies:": stone % ""}, ["not-connected"]),
+                ({"bodies:": stone % ", angle: 0.3"}, ["not-connected"]),
+                ({"bodies:": stone % ", angle: 0.3", "tip: [0.3, 0]": "tip: [0.3, 0], shoe: [0.3, 0.1]"}, ["not-connected", "unused"]),
+                ({"bodies:": disc % ", pose: {angle: 0}", "joints:": axle}, []),
+                ({"bodies:": disc % "", "joints:": axle}, ["left-free"]),
+                ({"bodies:": bar % "0.29", **base}, []),
+                # The pin between both bars is missing.
+                ({"bodies:": bar % "0.29", "tip: [0.3, 0]": "tip: [0.3, 0], top: [0.3, 0]", **base}, ["left-free", "unused"])]:
+            with self.subTest(changes):
+                text = hanging
+                for old, new in changes.items():
+                    text = text_of(text, old, new)
+                self.assertEqual(wanted, sorted(m["id"] for m in self.messages(text)), self.messages(text))
 
     def test_a_structure_that_is_hardly_meant_is_in_the_verdict(self):
         for old, new, words in [(GUIDE, "", "left over"), (GUIDE, GUIDE + GUIDE.replace("guide", "two"), "joint 'two' holds nothing")]:

@@ -63,6 +63,10 @@ forces: {hold: {type: spring-damper, between: [ground, m], kind: linear, stiffne
 initial: {joints: {slide: 1.1 m}}
 simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
 """
+# A pin that just touches its hole: the contact begins at no speed, by which the law divides its damping.
+TOUCHING = JOURNAL.replace("lankarani-nikravesh, restitution: 0.9", "flores, K: 1e8, restitution: 0.001").replace(
+    "      friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}\n", "      initial: {eccentricity: [0 mm, -0.1 mm]}\n").replace(
+        "      material: {E: 207 GPa, nu: 0.3}\n", "").replace("end: 20 ms, step: 10 us", "end: 0.1 s, accuracy: 1 um")
 NO_STEP = PENDULUM.replace("{pivot: 0 deg}", "{pivot: 0 deg}, speeds: {pivot: 1e7 rad/s}").replace(
     "mass: 1 kg, inertia: 1 kg*m^2 / 12, com: [0.5 m, 0], frames: {tip: [1 m, 0]}", "mass: 1 g, inertia: 0.1 g*mm^2, com: [5 mm, 0]")
 PUSHED = """freeplay: 1
@@ -189,6 +193,8 @@ CASES = {
         (0, driven("value: t", "value: exp(-((t - 0.05)/1e-4)^2)"), RUN),
     "... '...': it changes at t = ... s for some ... s, less than a millionth of the run, which steps may go over; ...":
         (0, PULSE.replace("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", "1/(1 + ((t - 0.7)/1e-8)^2)").replace("step: 5 ms", "accuracy: 1 um"), RUN),
+    "steps of ... s at t = ... s, of which the whole run would take ...; joint '...' lets them be no longer: its contact (...) is damped ...":
+        (0, TOUCHING, RUN),
     "--verify: THE RUNS DISAGREE: ...": (7, PULSE, RUN + ["--verify"]),
     "--verify: the second run was given up at ... s after ... steps": (0, STIFF, RUN + ["--verify"]),
     # Doubted, and run all the same

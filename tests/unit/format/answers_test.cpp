@@ -223,7 +223,7 @@ constexpr Answer of_analyses[] = {
     {"analysis: {grid: {x: [0], z: [0]}}",
      "2:27 type-space: 'z' is no number of a pose in the plane, which has x, y, angle"},
     {"analysis: {elbow: 0}", "2:19 out-of-range: 'analysis.elbow' must be 1 or -1, not 0"},
-    {"analysis: {elbow: [1, -1], joints: [A]}", "2:19 wrong-length: 'analysis.elbow' must have 1 items, not 2"},
+    {"analysis: {elbow: [1, -1], joints: [A]}", "2:19 wrong-length: 'analysis.elbow' must have 1 item, not 2"},
     {"analysis: {elbow: [1, 0]}", "2:23 out-of-range: 'analysis.elbow[1]' must be 1 or -1, not 0"},
     {"analysis: {path: {x: 1 kg}}",
      "2:22 dimension-mismatch: expected length, but this is mass | write a unit such as 'm'"},

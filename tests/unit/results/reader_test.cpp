@@ -234,7 +234,7 @@ TEST(CsvResult, RefusesWhatIsNoTable) {
     return "";
   };
   EXPECT_THAT(why("words.csv"), HasSubstr("line 3: 'one' is not a number"));
-  EXPECT_THAT(why("short.csv"), HasSubstr("line 2 has 1 fields, the header 2"));
+  EXPECT_THAT(why("short.csv"), HasSubstr("line 2 has 1 field, the header 2"));
   EXPECT_THAT(why("back.csv"), HasSubstr("line 3: time does not grow"));
   EXPECT_THAT(why("other.csv"), HasSubstr("its first column is not 'time'"));
   EXPECT_THAT(why("none.csv"), HasSubstr("there is no such file"));
