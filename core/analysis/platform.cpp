@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "base/error.h"
 #include "base/index.h"
 #include "base/suggestion.h"
@@ -73,8 +72,8 @@ void choose_elbow(const Model& model, const PlatformOverrides& overrides, Platfo
   if (!overrides.elbow.empty()) {
     if (overrides.elbow.size() != 1 && overrides.elbow.size() != count) {
       throw Error(Error::Category::usage, "bad-value",
-                  fmt::format("--elbow has {}, but {} {} driven", counted(overrides.elbow.size(), "value"),
-                              counted(count, "joint"), count == 1 ? "is" : "are"));
+                  fmt::format("--elbow has {} values, but {} joint{} driven", overrides.elbow.size(), count,
+                              count == 1 ? " is" : "s are"));
     }
     platform.elbow_given = true;
     platform.elbow = overrides.elbow.size() == 1 ? std::vector<int>(count, overrides.elbow[0]) : overrides.elbow;
@@ -84,8 +83,8 @@ void choose_elbow(const Model& model, const PlatformOverrides& overrides, Platfo
     const std::vector<int>& elbow = model.analysis.elbow;
     if (elbow.size() != 1 && elbow.size() != count) {
       throw Error(Error::Category::input, "wrong-length",
-                  fmt::format("'analysis.elbow' has {}, but {} {} driven", counted(elbow.size(), "value"),
-                              counted(count, "joint"), count == 1 ? "is" : "are"),
+                  fmt::format("'analysis.elbow' has {} values, but {} joint{} driven", elbow.size(), count,
+                              count == 1 ? " is" : "s are"),
                   *model.analysis.elbow_location);
     }
     platform.elbow_given = true;

@@ -7,7 +7,6 @@
 
 #include "analysis/branches.h"
 #include "analysis/rows.h"
-#include "base/counted.h"
 #include "base/error.h"
 #include "base/index.h"
 #include "model/leg.h"
@@ -147,9 +146,8 @@ void RequestedStations::at_inputs() {
     const int needed = mobility_ ? mobility_->general.freedoms - mobility_->general.held : freedoms_;
     if (held < needed) {
       throw Error(Error::Category::usage, "bad-value",
-                  fmt::format("--input {} gives {}, but the mechanism has {}", asked.words,
-                              counted(static_cast<std::size_t>(held), "input"),
-                              counted(static_cast<std::size_t>(needed), "freedom")));
+                  fmt::format("--input {} gives {} input{}, but the mechanism has {} freedom{}", asked.words, held,
+                              held == 1 ? "" : "s", needed, needed == 1 ? "" : "s"));
     }
     demands.push_back(demand);
   }

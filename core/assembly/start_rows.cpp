@@ -6,7 +6,6 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "base/index.h"
 #include "linear/row_solutions.h"
 #include "system/path_row.h"
@@ -49,15 +48,16 @@ void check_paths(const System& closed, const Evaluation& e) {
     const int free = numerical_rank(without), prescribed = numerical_rank(with);
     if (prescribed < nv) {
       throw Error(Error::Category::input, "ik-underdetermined",
-                  fmt::format("with its frame on the path of '{}' the mechanism still has {}", entry.name,
-                              counted(at(nv - prescribed), "freedom")),
+                  fmt::format("with its frame on the path of '{}' the mechanism still has {} freedom{}", entry.name,
+                              nv - prescribed, nv - prescribed == 1 ? "" : "s"),
                   entry.frame_location);
     }
     if (prescribed < free + given) {
-      throw Error(Error::Category::input, "ik-unreachable",
-                  fmt::format("the frame of '{}' cannot follow {} of a path: the mechanism leaves it {}", entry.name,
-                              counted(at(given), "component"), counted(at(prescribed - free), "freedom")),
-                  entry.path_location);
+      throw Error(
+          Error::Category::input, "ik-unreachable",
+          fmt::format("the frame of '{}' cannot follow {} component{} of a path: the mechanism leaves it {} freedom{}",
+                      entry.name, given, given == 1 ? "" : "s", prescribed - free, prescribed - free == 1 ? "" : "s"),
+          entry.path_location);
     }
   }
 }

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "format/parameter_scope.h"
@@ -240,7 +239,8 @@ std::optional<std::vector<CheckedValue>> CheckedValue::list(std::size_t length) 
     return std::nullopt;
   }
   if (node_->items.size() == length) return list();
-  fail("wrong-length", fmt::format("'{}' must have {}, not {}", path_, counted(length, "item"), node_->items.size()));
+  fail("wrong-length",
+       fmt::format("'{}' must have {} item{}, not {}", path_, length, length == 1 ? "" : "s", node_->items.size()));
   return std::nullopt;
 }
 

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "base/input_text.h"
 #include "results/reader.h"
 
@@ -80,7 +79,8 @@ double number(std::string_view field, const std::string& file, int line) {
 
 void require_fields(std::size_t fields, std::size_t names, const std::string& file, int line) {
   if (fields == names) return;
-  unreadable_result(file, fmt::format("line {} has {}, the header {}", line, counted(fields, "field"), names), line);
+  unreadable_result(
+      file, fmt::format("line {} has {} field{}, the header {}", line, fields, fields == 1 ? "" : "s", names), line);
 }
 
 double index_of(std::string_view word, std::vector<std::string>& words) {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "base/input_text.h"
 #include "format/study_axis.h"
 
@@ -40,7 +39,7 @@ std::optional<DesignTable> DesignTable::read(const std::string& place, const Che
   for (std::size_t row = 0; row < csv.rows(); ++row) {
     const std::size_t fields = csv.fields(row);
     if (fields != made.targets_.size()) {
-      return fail("wrong-length", fmt::format("has {} in line {}, not {}", counted(fields, "field"),
+      return fail("wrong-length", fmt::format("has {} {} in line {}, not {}", fields, fields == 1 ? "field" : "fields",
                                               csv.field(row, 0).location.line, made.targets_.size()));
     }
     for (std::size_t column = 0; column < fields; ++column) {

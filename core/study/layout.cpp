@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
-
 namespace freeplay {
 namespace {
 
@@ -64,8 +62,9 @@ bool StudyLayout::check_lengths(const std::vector<std::vector<std::size_t>>& gro
     for (const std::size_t other : group) {
       if (axes_[other].size() == first.size()) continue;
       axes_[other].source().entry.fail_at_key(
-          "wrong-length", fmt::format("'{}' has {}, '{}' beside it {}", axes_[other].name(),
-                                      counted(axes_[other].size(), "value"), first.name(), first.size()));
+          "wrong-length",
+          fmt::format("'{}' has {} value{}, '{}' beside it {}", axes_[other].name(), axes_[other].size(),
+                      axes_[other].size() == 1 ? "" : "s", first.name(), first.size()));
       good = false;
     }
   }

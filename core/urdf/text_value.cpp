@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include "base/counted.h"
 #include "urdf/blanks.h"
 
 namespace freeplay::urdf {
@@ -74,8 +73,9 @@ std::vector<double> text_numbers(const XmlElement& xml, std::size_t count, Messa
     begin = text.find_first_not_of(blanks, end);
   }
   if (numbers.size() == count) return numbers;
-  messages.error(whole_text_spot(xml), "bad-urdf",
-                 fmt::format("'{}' must be {}, not {}", xml.Name(), counted(count, "number"), numbers.size()));
+  messages.error(
+      whole_text_spot(xml), "bad-urdf",
+      fmt::format("'{}' must be {} number{}, not {}", xml.Name(), count, count == 1 ? "" : "s", numbers.size()));
   return {};
 }
 
