@@ -47,15 +47,15 @@ class Corners {
   void book_jump(double kink);
 
   /// Once the run is over: jumps of speeds; inputs that do more inside a step than it can see.
-  void format_jumps();
-  void format_unresolved();
+  [[gnu::cold]] void format_jumps();
+  [[gnu::cold]] void format_unresolved();
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);
 
  private:
-  void format_too_short();
-  void format_declared(double step, std::span<const std::string> said);
+  [[gnu::cold]] void format_too_short();
+  [[gnu::cold]] void format_declared(double step, std::span<const std::string> said);
   bool loads_jump(double corner);
   void note_driven(const Evaluation& e);
   int row_that_jumps() const;

@@ -26,7 +26,7 @@ class RunDoubts {
   bool watch_row(double dt);
   bool note_warnings();
   /// Once the run is over: warnings of joints, and play that was never used.
-  void format_warnings();
+  [[gnu::cold]] void format_warnings();
   void note_unused_play();
   void judge_motion();
   void note_lasting_blows();

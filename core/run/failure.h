@@ -36,29 +36,29 @@ class RunFailure {
   [[gnu::cold]] bool fail_in_switching(const EventStorm::Finding& found);
   [[gnu::cold]] bool fail_in_storm(const StepEvents::Happening& last, const EventStorm::Finding& found);
 
-  std::string why_not_converged(double dt) const;
-  std::string why_open(double position) const;
-  std::string why_singular() const;
+  [[gnu::cold]] std::string why_not_converged(double dt) const;
+  [[gnu::cold]] std::string why_open(double position) const;
+  [[gnu::cold]] std::string why_singular() const;
   /// Of a state at t that could not be made to hold its constraints, without a fault of an element.
-  std::string why_unsolved(double t) const;
+  [[gnu::cold]] std::string why_unsolved(double t) const;
   /// `limiting_joint`: that asks for a step so short, or -1.
-  std::string why_so_small(double dt, double smallest, int limiting_joint) const;
+  [[gnu::cold]] std::string why_so_small(double dt, double smallest, int limiting_joint) const;
   /// `gained`: energy without work in a step of length dt [J].
-  std::string why_energy_grows(double dt, double gained);
+  [[gnu::cold]] std::string why_energy_grows(double dt, double gained);
   std::string row_name(int row_index) const;
   bool all_built_in() const;
 
   /// Once the run is over: better reasons than the loop could give.
-  void explain_dead_point();
-  void explain_failure();
+  [[gnu::cold]] void explain_dead_point();
+  [[gnu::cold]] void explain_failure();
 
  private:
   void locate_end_of_motion(double& t, MotionFault& fault);
-  bool explain_end_of_path();
+  [[gnu::cold]] bool explain_end_of_path();
   bool ends_within(double ahead);
-  void explain_singular_position();
-  std::string why_singular(double t) const;
-  std::string why_beyond_bounds(double t, int joint) const;
+  [[gnu::cold]] void explain_singular_position();
+  [[gnu::cold]] std::string why_singular(double t) const;
+  [[gnu::cold]] std::string why_beyond_bounds(double t, int joint) const;
   int hardest_joint(BodyId body) const;
 
   RunContext& run_;

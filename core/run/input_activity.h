@@ -25,7 +25,7 @@ class InputActivity {
   /// `shortest`: duration of the changes that no step may go over where a
   /// formula cannot be analysed and a joint does not say how fine its dependence on time is [s]. `allowed`: by which
   /// positions may err in a step [m]; what moves them by much less does not matter.
-  InputActivity(const System& system, double shortest, double allowed);
+  [[gnu::cold]] InputActivity(const System& system, double shortest, double allowed);
 
   /// Where formulas have changes that last less, and no rule says how fast they may change, they are looked at as
   /// closely as these need, down to a duration of `least` [s]. Returns what even that does not show.
@@ -136,13 +136,13 @@ class InputActivity {
 
   static constexpr double samples_per_change = 3.0;  ///< in the duration of the shortest change
 
-  void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp, Unit unit,
-           int bends = 0);
+  [[gnu::cold]] void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
+                         Unit unit, int bends = 0);
   int bends(int driver) const;
   static Unit unit_of(DriverKind kind);
   double negligible(Unit unit, double dt) const;
   auto light(Unit unit, int bends) const;
-  void add_joint(int joint);
+  [[gnu::cold]] void add_joint(int joint);
   bool ask(int joint, double t, double& corner, Fault& fault) const;
   double quick(CornerKind sharp) const;
   template <class Input>

@@ -23,6 +23,6 @@ struct Wreck {
 /// springs and dampers that one which is farthest outside of what machines have, else the step, as a sentence without
 /// full stop: "inertia of 'coupler' is 250 kg m^2 for a mass of 0.21 kg: its radius of gyration would be 34 m". Empty
 /// when all are inside. `e` is evaluated where the run stands.
-std::string likely_cause(const System& system, const Evaluation& e, const Wreck& wreck);
+[[gnu::cold]] std::string likely_cause(const System& system, const Evaluation& e, const Wreck& wreck);
 
 }  // namespace freeplay
