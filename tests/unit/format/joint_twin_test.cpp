@@ -6,7 +6,7 @@ namespace freeplay {
 namespace {
 
 const std::string loose = with_rod(
-    "parameters: {c: 1 mm, k: 5}\n"
+    "parameters: {c: 1 mm, k: 5e9}\n"
     "joints:\n"
     "  a: {type: pin, ring: ground, shaft: rod, play: {gap: $c, contact: {law: power, K: $k, exponent: 2}}}\n");
 

@@ -147,8 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "5:57 missing-key "},
         Mistake{"key of a law",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1, contact: {law: power,\n"
-                "    K: 1, ex: 2}}}\n",
-                "6:11 unknown-key "},
+                "    K: 1e9, ex: 2}}}\n",
+                "6:13 unknown-key "},
         Mistake{"unit with exponent",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1, contact: {law: power,\n"
                 "    K: 1 N/m^1.5, exponent: 2}}}\n",
@@ -167,15 +167,15 @@ INSTANTIATE_TEST_SUITE_P(
                 "6:36 wrong-length "},
         Mistake{"fault of a constructor",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1,\n"
-                "    limit: 1 mm, contact: {law: power, K: 1}}}\n",
+                "    limit: 1 mm, contact: {law: power, K: 1e9}}}\n",
                 "6:12 out-of-range "},
         Mistake{"fault of a law's constructor",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1,\n"
-                "    contact: {law: power, K: 1, soft: 1}}}\n",
-                "6:33 conflicting-keys "},
+                "    contact: {law: power, K: 1e9, soft: 1}}}\n",
+                "6:35 conflicting-keys "},
         Mistake{"fault of a whole law",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1,\n"
-                "    contact: {law: power, K: 13}}}\n",
+                "    contact: {law: power, K: 13e9}}}\n",
                 "6:5 missing-key "},
         Mistake{"range in the unit of the table", "joints:\n  a: {type: rod, between: [ground, rod], length: 1 cm}\n",
                 "5:50 out-of-range "}));

@@ -74,7 +74,7 @@ Built build_pin(const std::string& keys, const BuildOptions& options = {}) {
                                                                "    between: [ground, rod]\n"
                                                                "    play:\n"
                                                                "      gap: 1 mm\n"
-                                                               "      contact: {law: power, K: 1}\n"
+                                                               "      contact: {law: power, K: 1e9}\n"
                                                                "      friction:\n"
                                                                "        law: measured\n" +
                                                                keys),
