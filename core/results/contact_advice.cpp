@@ -11,7 +11,7 @@ ContactAdvice::ContactAdvice(const Model& model)
     : from_(model.settings.start + model.settings.discard), per_contact_(model.settings.per_contact) {
   for (const JointElement& joint : model.joints) {
     auto& events = fields_.emplace_back();
-    joints_.emplace_back().fewest_steps.fill(std::numeric_limits<double>::infinity());
+    joints_.emplace_back();
     for (std::size_t i = 0; i < joint.layout.events.size; ++i) {
       const Event& event = joint.layout.events[i];
       const bool begins = event_role(joint.layout, i) == EventRole::contact_begin;
@@ -26,9 +26,11 @@ ContactAdvice::ContactAdvice(const Model& model)
 double ContactAdvice::fewest_steps_of_hard() const {
   double fewest = std::numeric_limits<double>::infinity();
   for (const OfJoint& joint : joints_) {
-    const auto hardest = std::find_if(joint.fewest_steps.rbegin(), joint.fewest_steps.rend(),
-                                      [](double steps) { return std::isfinite(steps); });
-    if (hardest != joint.fewest_steps.rend()) fewest = std::fmin(fewest, *hardest);
+    for (const ByDecade* impacts : {&joint.all, &joint.counted}) {
+      const auto hardest =
+          std::find_if(impacts->rbegin(), impacts->rend(), [](double steps) { return std::isfinite(steps); });
+      if (hardest != impacts->rend()) fewest = std::fmin(fewest, *hardest);
+    }
   }
   return fewest;
 }
@@ -37,18 +39,20 @@ void ContactAdvice::event(const EventRecord& record) {
   const Fields& at = fields_[static_cast<std::size_t>(record.joint)][static_cast<std::size_t>(record.event)];
   OfJoint& joint = joints_[static_cast<std::size_t>(record.joint)];
   if (at.speed >= 0) joint.speed = std::fmax(joint.speed, record.fields[static_cast<std::size_t>(at.speed)]);
-  if (at.duration < 0 || at.steps < 0 || record.time < from_) return;
+  if (at.duration < 0 || at.steps < 0) return;
   const double steps = record.fields[static_cast<std::size_t>(at.steps)];
   const double duration = record.fields[static_cast<std::size_t>(at.duration)];
   if (std::isnan(steps)) return;
-  ++ended_;
-  fewest_steps_ = std::fmin(fewest_steps_, steps);
   if (at.force >= 0) {
     const double force = record.fields[static_cast<std::size_t>(at.force)];
     const double decade = force > 0.0 ? std::floor(std::log10(force)) + 9.0 : 0.0;
-    double& fewest = joint.fewest_steps[static_cast<std::size_t>(std::clamp(decade, 0.0, decades - 1.0))];
-    fewest = std::fmin(fewest, steps);
+    const auto place = static_cast<std::size_t>(std::clamp(decade, 0.0, decades - 1.0));
+    joint.all[place] = std::fmin(joint.all[place], steps);
+    if (record.time >= from_) joint.counted[place] = std::fmin(joint.counted[place], steps);
   }
+  if (record.time < from_) return;
+  ++ended_;
+  fewest_steps_ = std::fmin(fewest_steps_, steps);
   if (steps >= per_contact_) return;
   ++under_resolved_;
   step_ = std::fmin(step_, duration / per_contact_);

@@ -10,7 +10,8 @@
 
 namespace freeplay {
 
-/// Looks at events with the fields `duration` and `steps` of a contact that ended, from Settings::discard on.
+/// Looks at events with the fields `duration` and `steps` of a contact that ended: from Settings::discard on, but for
+/// hard impacts from the start on, as what steps do not resolve there is missing in the motion afterwards.
 class ContactAdvice : public Sink {
  public:
   explicit ContactAdvice(const Model& model);
@@ -22,8 +23,8 @@ class ContactAdvice : public Sink {
   long under_resolved() const { return under_resolved_; }
   /// Fewest steps of a contact; NaN when none ended.
   double fewest_steps() const { return fewest_steps_; }
-  /// The same of hard impacts alone, whose largest force is of the same power of ten as the largest of their joint;
-  /// infinite without.
+  /// The same of hard impacts alone, whose largest force is of the same power of ten as the largest of their joint in
+  /// the whole run or from Settings::discard on; infinite without.
   double fewest_steps_of_hard() const;
   /// Largest speed at which a contact of this joint began, from the start of the run on [m/s]; 0 without one.
   double approach_speed(int joint) const { return joints_[static_cast<std::size_t>(joint)].speed; }
@@ -42,13 +43,18 @@ class ContactAdvice : public Sink {
   struct Fields {
     int duration = -1, steps = -1, force = -1, speed = -1;
   };
-  static constexpr int decades = 24;  // of forces, from 1e-9 N on
+  static constexpr int decades = 24;             // of forces, from 1e-9 N on
+  using ByDecade = std::array<double, decades>;  // fewest steps, by the power of ten of an impact's largest force
   struct OfJoint {
-    std::array<double, decades> fewest_steps;  // by the decade of an impact's largest force
+    OfJoint() {
+      all.fill(std::numeric_limits<double>::infinity());
+      counted = all;
+    }
+    ByDecade all, counted;  // from the start on, and from Settings::discard on
     double speed = 0.0;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.fewest_steps, self.speed);
+      archive(self.all, self.counted, self.speed);
     }
   };
   double from_, per_contact_;

@@ -251,6 +251,16 @@ simulation: {end: 0.1, accuracy: 1 um}
         self.assertEqual(("doubtful", 10.0), (reason["level"], reason["limit"]))
         self.assertLess(reason["value"], 10.0)
 
+    def test_impacts_before_the_statistics_count_for_their_steps(self):
+        self.run_model("""freeplay: 1
+bodies: {weight: {mass: 1, inertia: 1e-3}}
+forces: {load: {type: force, at: weight, value: [0, -200 N]}}
+joints: {j: {type: revolute, between: [ground, weight], clearance: {bearing_radius: 20 mm, radial_clearance: 0.1 mm,
+             contact: {law: expression, force: "1e7 N/m*delta + 5e2 N*s/m*rate"}}}}
+simulation: {end: 60 ms, step: 0.2 ms, output: {discard: 40 ms, interval: 0.2 ms}}
+""")
+        self.assertTrue([r for r in self.trust["reasons"] if r["message"].startswith("a hard impact took")], self.trust)
+
     def test_a_window_shorter_than_a_turn_is_doubtful(self):
         self.run_model(slider_crank(("discard: 12 ms", "discard: 13 ms")))
         self.assertIn("statistics-window", self.ids())
