@@ -17,7 +17,7 @@ using urdf::spot_of;
 struct Settings {
   enum class Inertia { never, always, where_missing };  ///< taken from geoms
 
-  double angle_unit = std::numbers::pi / 180.0;  ///< [rad]; MJCF counts in degrees unless told otherwise
+  double angle_unit = std::numbers::pi / 180.0;  ///< [rad]; MJCF counts in degrees unless the file says otherwise
   std::string euler_axes = "xyz";                ///< small letters turn about axes that move along, capital ones do not
   bool auto_limits = true;                       ///< a `range` alone limits a joint
   Inertia inertia_from_geoms = Inertia::where_missing;
