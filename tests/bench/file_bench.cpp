@@ -83,7 +83,7 @@ void write_seconds(benchmark::State& state, bool hdf5) {
   std::filesystem::remove(file);
 }
 
-const int registered = [] {
+const int file_kernels = [] {
   const auto add = [](const std::string& label, auto run) {
     return benchmark::RegisterBenchmark(label.c_str(), run)->MeasureProcessCPUTime()->UseRealTime();
   };

@@ -22,7 +22,7 @@ void law(benchmark::State& state, const Component& component, const Registry& re
   }
 }
 
-const int registered = [] {
+const int law_kernels = [] {
   const Registry& registry = test::builtin_types();
   for (const std::string& name : registry.names(ComponentKind::contact_law)) {
     const Component& component = *registry.find(ComponentKind::contact_law, name);

@@ -30,7 +30,7 @@ void step(benchmark::State& state, const std::string& integrator, bool accurate)
   state.counters["per_step"] = benchmark::Counter(steps, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-const int registered = [] {
+const int step_kernels = [] {
   const Registry registry = Registry::with_builtins();
   for (const std::string& name : registry.names(ComponentKind::integrator)) {
     for (const bool accurate : {false, true}) {

@@ -63,7 +63,7 @@ void solve(benchmark::State& state, const std::string& name, int windows) {
   }
 }
 
-const int registered = [] {
+const int system_kernels = [] {
   struct {
     const char* label;
     const char* name;

@@ -14,8 +14,8 @@ LARGEST = 1 << 24  # bytes of an input file
 MEMORY = 512 << 20
 
 
-def filled(begin, unit, end="", size=LARGEST // 4):
-    """Of a quarter of what is allowed: time and memory of most inputs are as their length."""
+def filled(begin, unit, end="", size=LARGEST // 8):
+    """Of an eighth of what is allowed: time and memory of most inputs are as their length."""
     return begin + unit * ((size - len(begin) - len(end)) // len(unit.encode())) + end
 
 
@@ -55,7 +55,7 @@ class HostileInput(ProgramTest):
         said = self.read("messages")[:400]
         os.remove(self.path(name))
         self.assertEqual(code, child.returncode, said)
-        self.assertLess(usage.ru_maxrss * 1024, MEMORY if len(text) > LARGEST // 4 else MEMORY // 2, said)
+        self.assertLess(usage.ru_maxrss * 1024, MEMORY if len(text) > LARGEST // 8 else MEMORY // 2, said)
         for word in ids:
             self.assertIn(word, said)
 

@@ -7,7 +7,7 @@ import tempfile
 import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SECONDS = float(os.environ.get("FREEPLAY_RANDOM_SECONDS", "20"))
+SECONDS = float(os.environ.get("FREEPLAY_RANDOM_SECONDS", "8"))
 CALLS = r"""
 import faulthandler, math, random, sys, threading, time, warnings
 import numpy as np

@@ -209,7 +209,7 @@ long most_steps_of(const std::string& name) {
   const std::unique_ptr<Model> model = load(mechanism(name), {});
   const bool has_events =
       std::ranges::any_of(model->joints, [](const JointElement& joint) { return !joint.layout.events.empty(); });
-  return has_events ? 1500 : 200;
+  return has_events ? 1000 : 200;
 }
 
 class ResumedModel : public ::testing::TestWithParam<std::string> {};
