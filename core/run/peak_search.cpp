@@ -4,12 +4,16 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.h"
+
 namespace freeplay {
 namespace {
 constexpr double first_credit = 8.0, credit_per_step = 1.0 / 24.0;
-constexpr int most_looks = 3;         // at one step
 constexpr double least_gain = 1e-6;   // of the largest value
 constexpr double large_gain = 1e-2;   // is pursued without credit
+constexpr double fair_gain = 1e-3;    // has a credit of its own, which small gains do not use up
+constexpr double steep = 0.25;        // change over a step, as a part of the higher end
+constexpr double beside_end = 0.9;    // of a step
 constexpr double same_place = 0.02;   // of a step
 constexpr double nearest_end = 0.05;  // of a step
 
@@ -29,8 +33,9 @@ struct Parabola {
 double part_of(double gain, double largest) { return gain / std::max(std::abs(largest), 1e-300); }
 }  // namespace
 
-PeakSearch::PeakSearch(std::size_t values) : credit_(first_credit) {
-  for (Point* point : {&before_, &start_, &end_, &inner_}) point->values.resize(values);
+PeakSearch::PeakSearch(std::size_t values) : credit_(first_credit), fair_credit_(first_credit) {
+  for (Point* point : {&before_, &start_, &end_}) point->values.resize(values);
+  for (Point& point : inner_) point.values.resize(values);
 }
 
 void PeakSearch::restart(double t, std::span<const double> values) {
@@ -45,8 +50,9 @@ void PeakSearch::end_step(double t, std::span<const double> values) {
   end_.x = t;
   std::ranges::copy(values, end_.values.begin());
   ends_ = std::min(ends_ + 1, 3);
-  looks_ = 0;
+  looks_ = extras_ = 0;
   credit_ = std::min(credit_ + credit_per_step, first_credit);
+  fair_credit_ = std::min(fair_credit_ + credit_per_step, first_credit);
 }
 
 // What the parabola says at its top, and half as much as it bulges over a step more, since it may bulge otherwise.
@@ -67,30 +73,65 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
   return {s, part_of(height - 0.125 * curve.bend - largest, largest)};
 }
 
-PeakSearch::Candidate PeakSearch::by_look(std::size_t value, double largest) const {
-  const Parabola curve({0.0, start_.values[value]}, {inner_.x, inner_.values[value]}, {1.0, end_.values[value]});
+// The parabola through the highest place that is known and those beside it.
+PeakSearch::Candidate PeakSearch::by_looks(std::size_t value, double largest) const {
+  Node nodes[most_looks + most_extras + 2] = {{0.0, start_.values[value]}, {1.0, end_.values[value]}};
+  int count = 2;
+  for (int i = 0; i < looks_ + extras_; ++i) nodes[count++] = {inner_[at(i)].x, inner_[at(i)].values[value]};
+  std::sort(nodes, nodes + count, [](const Node& a, const Node& b) { return a.x < b.x; });
+  const Node* highest = std::max_element(nodes, nodes + count, [](const Node& a, const Node& b) { return a.y < b.y; });
+  const Node* middle = std::clamp<const Node*>(highest, nodes + 1, nodes + count - 2);
+  const Parabola curve(middle[-1], middle[0], middle[1]);
   if (!(curve.bend < 0.0)) return {};
   const double top = curve.vertex();
-  if (!(top > 0.0 && top < 1.0) || std::abs(top - inner_.x) < same_place) return {};
+  if (!(top > 0.0 && top < 1.0)) return {};
+  for (const Node* node = nodes + 1; node < nodes + count - 1; ++node) {
+    if (std::abs(top - node->x) < same_place) return {};
+  }
   return {top, part_of(curve.at(top) - largest, largest)};
 }
 
+// A sharp peak rises so from far below that the ends do not show whether the step has gone over its top.
+PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest) const {
+  const double start = start_.values[value], end = end_.values[value], rise = end - start;
+  if (ends_ < 3 || !(rise > steep * end)) return {};
+  return {beside_end, part_of(end + (1.0 - beside_end) * rise - largest, largest)};
+}
+
 double PeakSearch::next(std::span<const double> largest) {
-  if (ends_ < 2 || looks_ == most_looks) return 0.0;
+  if (ends_ < 2) return 0.0;
+  const bool looked = looks_ + extras_ > 0;
   Candidate best;
   for (std::size_t i = 0; i < largest.size(); ++i) {
-    const Candidate one = looks_ == 0 ? by_ends(i, largest[i]) : by_look(i, largest[i]);
+    const Candidate one = looked ? by_looks(i, largest[i]) : by_ends(i, largest[i]);
     if (one.gain > best.gain) best = one;
   }
-  if (!(best.gain > least_gain) || (credit_ < 1.0 && best.gain < large_gain)) return 0.0;
-  credit_ = std::max(credit_ - 1.0, 0.0);
-  ++looks_;
+  const bool usual = extras_ == 0 && looks_ < most_looks && best.gain > least_gain;
+  if (usual && (credit_ >= 1.0 || best.gain >= large_gain)) {
+    credit_ = std::max(credit_ - 1.0, 0.0);
+    ++looks_;
+    return best.s;
+  }
+  return next_extra(best, largest);
+}
+
+// What the usual looks leave is worth more of them where it is much.
+double PeakSearch::next_extra(Candidate best, std::span<const double> largest) {
+  for (std::size_t i = 0; i < largest.size() && extras_ == 0; ++i) {
+    const Candidate one = by_steepness(i, largest[i]);
+    if (one.gain > best.gain) best = one;
+  }
+  if (extras_ == most_extras || !(best.gain > fair_gain)) return 0.0;
+  if (fair_credit_ < 1.0 && best.gain < large_gain) return 0.0;
+  fair_credit_ = std::max(fair_credit_ - 1.0, 0.0);
+  ++extras_;
   return best.s;
 }
 
 void PeakSearch::seen(double s, std::span<const double> values) {
-  inner_.x = s;
-  std::ranges::copy(values, inner_.values.begin());
+  Point& point = inner_[at(looks_ + extras_ - 1)];
+  point.x = s;
+  std::ranges::copy(values, point.values.begin());
 }
 
 }  // namespace freeplay

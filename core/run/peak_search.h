@@ -1,15 +1,18 @@
 // PeakSearch: where inside a step of an accuracy run a value may exceed its largest so far.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace freeplay {
 
 /// Steps that an accuracy chooses may be long against the bend of forces: the largest value then lies inside one and at
-/// neither end. The parabola through the last three ends, and after a look that through both ends and the look, says
+/// neither end. The parabola through the last three ends, and after a look that about the highest place, says
 /// where and how much. Looks cost about as much as a stage of an integrator: a step gets three at most, and all
-/// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued.
+/// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued. As
+/// many again are kept for what is then left of a thousandth or more, of values that are largest at another place or
+/// that rise steeply.
 class PeakSearch {
  public:
   explicit PeakSearch(std::size_t values);
@@ -25,12 +28,14 @@ class PeakSearch {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.before_, self.start_, self.end_, self.inner_, self.ends_, self.looks_, self.credit_);
+    archive(self.before_, self.start_, self.end_, self.ends_, self.looks_, self.credit_, self.extras_,
+            self.fair_credit_);
   }
 
  private:
+  static constexpr int most_looks = 3, most_extras = 3;  // at one step
   struct Point {
-    double x = 0.0;  ///< time [s], of `inner_` the fraction of the step
+    double x = 0.0;  ///< time [s], of looks the fraction of the step
     std::vector<double> values;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
@@ -41,12 +46,15 @@ class PeakSearch {
     double s = 0.0, gain = 0.0;  ///< gain: as a part of the largest value
   };
   Candidate by_ends(std::size_t value, double largest) const;
-  Candidate by_look(std::size_t value, double largest) const;
+  Candidate by_looks(std::size_t value, double largest) const;
+  Candidate by_steepness(std::size_t value, double largest) const;
+  double next_extra(Candidate best, std::span<const double> largest);
 
-  Point before_, start_, end_, inner_;
-  int ends_ = 0;   ///< known in a row, at most 3
-  int looks_ = 0;  ///< at the present step
-  double credit_;
+  Point before_, start_, end_;
+  std::array<Point, most_looks + most_extras> inner_;  ///< looks at the present step
+  int ends_ = 0;                                       ///< known in a row, at most 3
+  int looks_ = 0, extras_ = 0;                         ///< at the present step
+  double credit_, fair_credit_;
 };
 
 }  // namespace freeplay

@@ -338,13 +338,12 @@ bool Recorder::write_row_at(double t) {
 
 // The row at t of the interpolated motion, but for its energies. What cannot be seen there is no failure of the run.
 bool Recorder::observe_inside(double t, const Ends& step, std::span<double> row) {
-  if (run_.solver.regularity() < near_singular) return false;
   const double s = (t - step.start.t()) / (step.end.t() - step.start.t());
   DenseStep(run_.model.space, step.start, step.e_start.internal_rate, step.end, step.e_end.internal_rate)
       .at(s, run_.between);
   run_.between.t() = t;
   Fault ignored;
-  return inside_.settle_between() && attempt_.evaluate_all(run_.between, run_.e_between) &&
+  return inside_.settle_aside() && attempt_.evaluate_all(run_.between, run_.e_between) &&
          (run_.adaptive ||
           run_.system.joints().evaluate_coordinates(point(run_.between), term_coordinate, run_.e_between)) &&
          observer_.observe(run_.between, run_.e_between, row, ignored);

@@ -12,6 +12,8 @@ namespace {
 constexpr int order_by_ends = 5;           // of a method whose steps are known as well inside by their ends
 constexpr double unnoticed_inside = 1e-2;  // part of what a step may err by, by which its inside may change
 constexpr double astray_inside = 1.0;      // and by which its ends may mislead: no more than a step may err by
+constexpr double nearest_aside = 1e-8;     // regularity of a step that is looked into, but for the output
+constexpr double as_far = 0.5;             // part of the regularity at its end: 0.7 of the distance
 constexpr int most_sweeps = 3;
 constexpr double most_growth = 2.0;  // of changes from sweep to sweep: more is a stiff force, less may be rounding
 }  // namespace
@@ -32,6 +34,18 @@ bool StepInside::settle_between() {
   run_.solver.move_away();
   return run_.solver.project_position(view) && run_.solver.project_velocity(view) &&
          run_.solver.accelerate(view, {run_.z_rate.data(), run_.z_rate.size()});
+}
+
+// Forces grow without bounds towards a singular position that the motion goes through, and their errors with them: what
+// is seen there says no more than the end of the step, the place of the last pivot, unless it is about as far away.
+bool StepInside::settle_aside() {
+  IndependentRows& rows = run_.solver.rows();
+  if (!(rows.regularity() < near_singular)) return settle_between();
+  const IndependentRows::Regularity then = rows.regularities();
+  if (!(then.last >= nearest_aside)) return false;
+  const bool settled = settle_between() && rows.regularities().last >= as_far * then.last;
+  rows.put_back(then);
+  return settled;
 }
 
 // Between its ends a step is known to the sixth order from these alone. Where that is not enough the equations of

@@ -13,6 +13,9 @@ class StepInside {
 
   /// The state in `between` with its constraints, accelerations and multipliers.
   bool settle_between();
+  /// The same for a look that the run can do without: false, too, where what is seen there may be wrong, beside a
+  /// singular position. Of how near the step came to one it changes nothing.
+  bool settle_aside();
   /// A consistent state at t inside the step, in `between` and e_between, as good as the ends of the step are. False
   /// when the run is over.
   bool look_inside(double t);

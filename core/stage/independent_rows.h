@@ -52,6 +52,14 @@ class IndependentRows {
   /// The same in the present attempt alone: 1 where it had no pivot.
   double attempt_regularity() const { return regularity_; }
 
+  /// What both say, so that a look at another position can leave it as it was; `last`: at the position of the last
+  /// pivot.
+  struct Regularity {
+    double attempt = 1.0, last = 1.0;
+  };
+  Regularity regularities() const { return {regularity_, last_regularity_}; }
+  void put_back(const Regularity& then) { regularity_ = then.attempt, last_regularity_ = then.last; }
+
   /// Multipliers of least norm are only asked for where find_more() was called before.
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

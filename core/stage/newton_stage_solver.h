@@ -78,6 +78,7 @@ class NewtonStageSolver {
   int worst_row() const { return worst_row_; }
   long iterations() const { return iterations_; }
   long factorizations() const { return factors_.factorizations() + index_one_.factorizations(); }
+  IndependentRows& rows() { return equations_.rows(); }
   /// See IndependentRows::regularity().
   double regularity() const { return equations_.rows().regularity(); }
   /// Row that comes closest to depending on the others where the equations were evaluated last, or -1. Slow.

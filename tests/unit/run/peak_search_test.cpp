@@ -47,6 +47,17 @@ TEST(PeakSearch, FindsAMaximumBetweenTheEndsOfSteps) {
   }
 }
 
+// A force beside a singular position of links: steps that rise from far below do not show by their ends alone that the
+// last one went over the top.
+TEST(PeakSearch, FindsASharpMaximumThatStepsRiseToFromFarBelow) {
+  const auto sharp = [](double t) { return 1e-3 + std::pow(1.0 + std::pow((t - 0.5) / 0.01, 2), -1.5); };
+  const double exact = sharp(0.5);
+  for (double step = 0.004; step < 0.012; step += 0.0007) {
+    SCOPED_TRACE(step);
+    EXPECT_NEAR(walk(sharp, step, 1.0).largest, exact, 3e-3 * exact);
+  }
+}
+
 TEST(PeakSearch, FindsTheLargestOfManyPeaks) {
   const auto beat = [](double t) { return std::abs(std::sin(7.0 * t) * (1.0 + 0.2 * std::sin(1.3 * t))); };
   double exact = 0.0;
