@@ -153,7 +153,7 @@ std::string RunFailure::why_singular(double t) const {
       "t = {:.9g} s: the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding "
       "hides how",
       t);
-  if (const std::string worst = row_name(run_.solver.weakest_row()); !worst.empty()) {
+  if (const std::string worst = row_name(run_.solver.rows().weakest(run_.solver.evaluation())); !worst.empty()) {
     text += "; first to depend on the other constraints is " + worst;
   }
   return text + std::string(advice::other_steps);

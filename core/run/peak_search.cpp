@@ -12,7 +12,8 @@ constexpr double first_credit = 8.0, credit_per_step = 1.0 / 24.0;
 constexpr double least_gain = 1e-6;   // of the largest value
 constexpr double large_gain = 1e-2;   // is pursued without credit
 constexpr double fair_gain = 1e-3;    // has a credit of its own, which small gains do not use up
-constexpr double steep = 0.25;        // change over a step, as a part of the higher end
+constexpr double steep = 0.1;         // rise over a step, as a part of its end
+constexpr double far_below = 0.5;     // of the end: where the step before began
 constexpr double beside_end = 0.9;    // of a step
 constexpr double same_place = 0.02;   // of a step
 constexpr double nearest_end = 0.05;  // of a step
@@ -70,7 +71,7 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
   if (!(top > -0.25 && top < 1.25)) return {};
   const double s = std::clamp(top, nearest_end, 1.0 - nearest_end);
   const double height = top > 0.0 && top < 1.0 ? curve.at(top) : higher;
-  return {s, part_of(height - 0.125 * curve.bend - largest, largest)};
+  return {s, part_of(height - 0.125 * curve.bend - largest, largest), part_of(height - largest, largest)};
 }
 
 // The parabola through the highest place that is known and those beside it.
@@ -88,23 +89,26 @@ PeakSearch::Candidate PeakSearch::by_looks(std::size_t value, double largest) co
   for (const Node* node = nodes + 1; node < nodes + count - 1; ++node) {
     if (std::abs(top - node->x) < same_place) return {};
   }
-  return {top, part_of(curve.at(top) - largest, largest)};
+  const double gain = part_of(curve.at(top) - largest, largest);
+  return {top, gain, gain};
 }
 
 // A sharp peak rises so from far below that the ends do not show whether the step has gone over its top.
 PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest) const {
   const double start = start_.values[value], end = end_.values[value], rise = end - start;
-  if (ends_ < 3 || !(rise > steep * end)) return {};
-  return {beside_end, part_of(end + (1.0 - beside_end) * rise - largest, largest)};
+  if (ends_ < 3 || !(rise > steep * end && before_.values[value] < far_below * end)) return {};
+  const double gain = part_of(end + (1.0 - beside_end) * rise - largest, largest);
+  return {beside_end, gain, gain};
 }
 
 double PeakSearch::next(std::span<const double> largest) {
   if (ends_ < 2) return 0.0;
   const bool looked = looks_ + extras_ > 0;
-  Candidate best;
+  Candidate best, likely;
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const Candidate one = looked ? by_looks(i, largest[i]) : by_ends(i, largest[i]);
     if (one.gain > best.gain) best = one;
+    if (one.likely > likely.likely) likely = one;
   }
   const bool usual = extras_ == 0 && looks_ < most_looks && best.gain > least_gain;
   if (usual && (credit_ >= 1.0 || best.gain >= large_gain)) {
@@ -112,17 +116,17 @@ double PeakSearch::next(std::span<const double> largest) {
     ++looks_;
     return best.s;
   }
-  return next_extra(best, largest);
+  return next_extra(likely, largest);
 }
 
 // What the usual looks leave is worth more of them where it is much.
 double PeakSearch::next_extra(Candidate best, std::span<const double> largest) {
   for (std::size_t i = 0; i < largest.size() && extras_ == 0; ++i) {
     const Candidate one = by_steepness(i, largest[i]);
-    if (one.gain > best.gain) best = one;
+    if (one.likely > best.likely) best = one;
   }
-  if (extras_ == most_extras || !(best.gain > fair_gain)) return 0.0;
-  if (fair_credit_ < 1.0 && best.gain < large_gain) return 0.0;
+  if (extras_ == most_extras || !(best.likely > fair_gain)) return 0.0;
+  if (fair_credit_ < 1.0 && best.likely < large_gain) return 0.0;
   fair_credit_ = std::max(fair_credit_ - 1.0, 0.0);
   ++extras_;
   return best.s;

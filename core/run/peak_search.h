@@ -43,7 +43,8 @@ class PeakSearch {
     }
   };
   struct Candidate {
-    double s = 0.0, gain = 0.0;  ///< gain: as a part of the largest value
+    double s = 0.0, gain = 0.0;  ///< gain: at most, as a part of the largest value
+    double likely = 0.0;         ///< the same by the parabola alone
   };
   Candidate by_ends(std::size_t value, double largest) const;
   Candidate by_looks(std::size_t value, double largest) const;

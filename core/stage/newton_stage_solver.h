@@ -81,8 +81,6 @@ class NewtonStageSolver {
   IndependentRows& rows() { return equations_.rows(); }
   /// See IndependentRows::regularity().
   double regularity() const { return equations_.rows().regularity(); }
-  /// Row that comes closest to depending on the others where the equations were evaluated last, or -1. Slow.
-  int weakest_row() { return equations_.rows().weakest(equations_.evaluation()); }
 
   /// All else is of one stage, or follows from the model.
   template <class Self, class Archive>
