@@ -87,6 +87,9 @@ bool StepAcceptance::apply_events(const StepEvents::Passage& located, double lat
       run_.events.apply_at_end(located, late, run_.trial, run_.e_trial, mobility, &run_, fault)) {
     return true;
   }
+  // No joint has failed in its event: the mass that a contact feels could not be known.
+  if (fault.kind == Fault::Kind::none) fault = run_.solver.evaluation()->fault;
+  if (fault.kind == Fault::Kind::none) return failure_.fail(4, failure_.why_unsolved(run_.trial.t()));
   return failure_.fail_with(fault, run_.trial.t());
 }
 
