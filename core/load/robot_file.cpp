@@ -25,8 +25,9 @@ std::optional<urdf::Sections> add_robot_sections(const std::string& text, const 
                                                  const urdf::Options& options, Document& document,
                                                  Diagnostics& diagnostics) {
   // Of a file that is not well-formed the first tag that is there says what it was to be.
-  const auto holds = [&](const char* tag) { return text.find(tag) != std::string::npos; };
-  const char* id = holds("<mujoco") ? "bad-mjcf" : holds("<sdf") ? "bad-sdf" : "bad-urdf";
+  const std::size_t mjcf = text.find("<mujoco"), sdf = text.find("<sdf"), urdf = text.find("<robot");
+  const std::size_t first = std::min({mjcf, sdf, urdf});
+  const char* id = first == urdf ? "bad-urdf" : first == mjcf ? "bad-mjcf" : "bad-sdf";
   const auto xml = parse_xml(text, *file_name, id, diagnostics);
   if (!xml) return std::nullopt;
   const std::string root = xml->root().Name();

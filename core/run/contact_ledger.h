@@ -1,4 +1,4 @@
-// ContactLedger: what every contact of a joint with play takes: impulses and energy, from its begin to its end.
+// ContactLedger: impulses and energy loss of every contact of a joint with play, from its begin to its end.
 #pragma once
 
 #include <span>
@@ -12,9 +12,9 @@
 
 namespace freeplay {
 
-/// Energy is that of the run's account: what a joint loses in a step is lost by its contacts in that step, shared by
-/// what each dissipates. So the contacts of a joint lose together what the account says. Impulses are the areas under
-/// the forces at accepted states.
+/// The energy that a joint loses in a step, by the account of the run, is divided among its contacts in that step in
+/// proportion to what each dissipates: their losses add up to the account's. Impulses are the areas under the forces at
+/// accepted states.
 class ContactLedger {
  public:
   ContactLedger(const Joints& joints, const Channels& channels);
@@ -33,7 +33,7 @@ class ContactLedger {
     int joint, event;
     ContactRecord record;
   };
-  /// Those at the last state, by joint in declaration order. At the end of a run: they are made anew.
+  /// Those at the last state, by joint in declaration order. Each call makes the list again: for the end of a run.
   std::vector<Open> open() const;
 
   template <class Self, class Archive>

@@ -88,7 +88,8 @@ std::span<const double> ContactRows::values(std::span<const double> row) {
   return values_;
 }
 
-// A mean speed is that of the middle of the step, and the way grows like the time. False where no row is wanted.
+// The mean speed of a step is taken for that of its middle, and the phase goes on linearly in time. False where no row
+// is wanted.
 bool ContactRows::go_on(OfJoint& joint, std::span<const double> row) {
   if (joint.penetration < 0 || joint.approach == 0.0 || joint.passed == 1.0) return false;
   const double t = row[time_column_], depth = row[at(joint.penetration)], dt = t - joint.time;
@@ -155,7 +156,7 @@ void ContactRows::hold(std::span<const double> row) {
   last_held_of_grid_ = slot.time;
 }
 
-// The one that has the row, or another.
+// The slot that holds the row already, else one for it.
 int ContactRows::slot_of(std::span<const double> row) {
   const double time = row[time_column_];
   auto found = std::ranges::find_if(slots_, [&](const Slot& slot) { return slot.used && slot.time == time; });

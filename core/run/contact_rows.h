@@ -13,12 +13,12 @@
 
 namespace freeplay {
 
-/// Of the states that a run looks at anyway it keeps those with the largest normal force and penetration of every
-/// contact, and Settings::rows_in_contact along an impact: at equal parts of the way from the speed of approach to its
-/// opposite, which a loss-free impact takes as half a wave; in steps of fixed size at the ends of steps. A contact that
-/// lasts over several intervals has its largest values in each in which they grow; where statistics begin it counts as
-/// one that begins. What is a row is known once the next row of the grid is: rows are held back until then, those of
-/// the grid that lie inside the same step, too.
+/// Keeps, of the states that a run evaluates anyway, those with the largest normal force and penetration of every
+/// contact, and Settings::rows_in_contact along an impact: at equal phases of the half sine that the penetration of an
+/// impact without loss is, from the speed of approach to its opposite; in steps of fixed size at the ends of steps. A
+/// contact that lasts over several intervals has its largest values in each in which they grow; where statistics begin
+/// it counts as one that begins. What is a row is known once the next row of the grid is: rows are held back until
+/// then, those of the grid that lie inside the same step, too.
 class ContactRows {
  public:
   using Give = std::function<void(std::span<const double> row, bool of_grid)>;
@@ -40,11 +40,12 @@ class ContactRows {
   void hold(std::span<const double> row);
   /// Nothing acts and nothing is held: rows of the grid inside the step to come can be written at once.
   bool idle() const { return held_ == 0 && !touching_; }
-  /// Gives what is held back, in order of time: before a row of the grid is written that stands at the end of the last
-  /// step; after a step what stands before the rows of the grid inside it, and these, or where too much is held all;
-  /// and all where no row of the grid comes any more.
+  // These give rows that are held back, in order of time.
+  /// Before a row of the grid at `time`, the end of the last step, is written: all rows before it.
   void give_before_row(double time, const Give& give);
+  /// After a step: rows up to the last row of the grid inside it; all rows where too many are held.
   void give_after_step(const Give& give);
+  /// When no row of the grid follows.
   void give_all(const Give& give);
 
   /// What is searched for inside steps: values that a row has, and the largest so far in the present contacts.

@@ -84,7 +84,7 @@ struct RunContext {
   bool ended_abruptly = true;  ///< the last step: at an event or a kink, after which values change abruptly
 };
 
-/// With which the integrator's error estimate falls with the step.
+/// Power of the step size with which the integrator's error estimate falls.
 int error_power(const IntegratorLayout& layout);
 
 /// Part of the accuracy per second that one step may cost.

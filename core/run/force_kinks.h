@@ -11,15 +11,15 @@ namespace freeplay {
 /// its formula: a step over one may err by many times what its estimate shows. Steps that end there do not.
 class ForceKinks {
  public:
-  /// Steps over a kink end there if their estimate, so many times, would not be allowed. Larger factors gain little and
-  /// cost steps.
+  /// A step ends at a kink inside it where its error estimate times this factor exceeds what is allowed. Larger factors
+  /// gain little and cost steps.
   static constexpr double hidden = 8.0;
 
   explicit ForceKinks(RunContext& run);
   bool any() const { return !joints_.empty(); }
 
-  /// The part of the step that was just made after which a force has a kink, by the secant; 1 where none lies inside,
-  /// but for the outermost fiftieths of the step, in which it does not matter. False when a joint fails.
+  /// The part of the step that was just made after which a force has a kink, by the secant method; 1 if there is none.
+  /// A kink in the first or last fiftieth of the step does not matter and counts as none. False when a joint fails.
   bool first_inside(double& part, Fault& fault);
 
  private:

@@ -18,9 +18,9 @@ struct RunHooks {
   std::function<void(const std::string&)> notice;
   /// Called after every accepted step, when its rows and events are written: the instants at which to save().
   std::function<void()> stepped;
-  StepSink* steps = nullptr;   ///< looks at all of them
+  StepSink* steps = nullptr;   ///< receives every accepted step
   Profile* profile = nullptr;  ///< counts where the time goes
-  /// For tests of what finds wrong runs: steps go over what forces and other inputs do inside them.
+  /// For tests of checks that find wrong runs: changes of forces and other inputs inside a step are not resolved.
   bool blind_to_inputs = false;
 };
 

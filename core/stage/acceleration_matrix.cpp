@@ -151,7 +151,7 @@ void AccelerationMatrix::make_whole() {
   whole_->set_pattern(dependent_);
 }
 
-// Towards a singular position the pivots of both fall alike, with the square of the distance.
+// Close to a singular position the pivots of both matrices fall with the square of the distance from it.
 double AccelerationMatrix::factor_whole(Evaluation& e, double normal) {
   if (whole_ == nullptr) make_whole();
   const double whole = whole_->factor(e, 0.0, 0.0, 0.0);

@@ -34,7 +34,7 @@ class AccelerationMatrix {
   void solve(std::span<double> x, std::span<double> l);
   /// After factor(): a solution satisfies all equations as well as its forces and accelerations are rounded.
   bool is_well_conditioned() const { return by_normal_ && smallest_ > well_conditioned; }
-  /// After factor(): the rows are far from depending on each other. False says nothing.
+  /// After factor(): true if the rows are far from depending on each other. False: it is not known.
   bool has_independent_rows() const { return by_normal_; }
 
   /// Phi_q from which the factors follow. restore() expects the pattern.

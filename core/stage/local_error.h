@@ -42,8 +42,8 @@ class LocalError {
 
  private:
   static constexpr double velocity_rounding = 2e-14;  // relative
-  /// Of the largest amount that an internal variable had so far: while it moves nothing no other bound keeps a method
-  /// that is not stable from making it grow without end, and then it may come to act.
+  /// Of the largest amount that an internal variable had so far. Without this bound a method that is not stable could
+  /// let an internal variable that moves nothing grow without end, until it does act.
   static constexpr double internal_allowed = 0.5;
 
   /// Largest error in units of `allowed`, a length or its rate. Close to a singular position of the constraints the

@@ -24,7 +24,7 @@ RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParamet
   }
 }
 
-// An equation rounds as the coordinates do that it is made of: by units, where they are not many units large.
+// The rounding of an equation is that of its coordinates, each taken as one unit large or more.
 void RoundingFloor::measure() {
   const Evaluation& e = equations_.evaluation();
   const std::span<const double> unit = equations_.units();

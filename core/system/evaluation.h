@@ -26,7 +26,7 @@ struct Evaluation : MarkerValues, JointValues, DriverValues, DrivenValues, Const
   Profile* profile() const { return context == nullptr ? nullptr : context->profile; }
   Fault fault;
 
-  /// Prescribed motions are not those of their times any more.
+  /// Prescribed motions that are kept for a time are invalid from now on.
   void forget_motions() { motion_time = other_motion_time = driven_time = std::numeric_limits<double>::quiet_NaN(); }
   /// Whether phi and Phi_q are those of this time and these coordinates.
   bool has_rows_at(const Point& point) const;
@@ -53,7 +53,7 @@ struct Evaluation : MarkerValues, JointValues, DriverValues, DrivenValues, Const
   }
 };
 
-/// An Evaluation that changes places with another one by its address.
+/// An Evaluation that is swapped with another one by pointer, without a copy.
 class KeptEvaluation {
  public:
   explicit KeptEvaluation(const System& system, EvaluationContext* context = nullptr)

@@ -8,8 +8,9 @@
 
 namespace freeplay {
 
-/// Of a joint that is not asked for forces while its second marker stays within `radius` of `from` [m], 0 for none, as
-/// Joint::free_distance counts the way. Where it sleeps (`now`), it is asked for nothing else either.
+/// State of a sleeping joint: its forces are not evaluated while its second marker stays within `radius` of `from` [m]
+/// (0: it does not sleep), as Joint::free_distance counts the way. While it sleeps (`now`) nothing else of it is
+/// evaluated either.
 struct Sleep {
   /// How the way is counted: JointLayout::free_turns, play between walls in the plane, or any other.
   enum class Kind { round, walls, turns };
@@ -57,7 +58,7 @@ struct Sleep {
     }
     return squared < radius * radius;
   }
-  /// No less than how far b moved: lengths are never more than the sums of their parts [m].
+  /// Upper bound of how far b moved [m]: the sum of the components, which no length exceeds.
   double way(const MarkerKinematics& a, const MarkerKinematics& b) const {
     double at[12];
     place(a, b, at);

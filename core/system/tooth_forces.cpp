@@ -73,7 +73,7 @@ std::array<ToothWrench, 3> tooth_wrenches(const System& system, const Gear& gear
     return ToothWrench{joint, is_whole, {force.real(), force.imag()}, moment};
   };
   const PlanePoint own = b_is_second ? load.force : -load.force;
-  // Of a rack the row of the gear alone acts along its slide, where the second frame of this stands.
+  // The row of the gear already supplies the force along the slide of a rack, at the slide's second frame.
   const PlanePoint lacking = is_rack ? load.radial : load.force;
   const double moment = is_rack ? cross_product(load.at - place(model.joints[at(b.joint)].marker_b), load.force) : 0.0;
   return {wrench(gear.joint, true, own, cross_product(load.at - (b_is_second ? to : from), own)),

@@ -378,6 +378,12 @@ class Messages(MjcfTest):
 
 
 class Files(MjcfTest):
+    def test_what_is_not_well_formed_is_what_its_first_tag_says(self):
+        for text, word in (("<robot name='r'><mujoco/><link></robot>", "[bad-urdf]"), ("<mujoco><robot></mujoco>", "[bad-mjcf]"),
+                           ("<sdf version='1.9'><mujoco></sdf>", "[bad-sdf]"), ("<link></robot>", "[bad-urdf]")):
+            with self.subTest(text):
+                self.assertIn(word, self.complaint(text))
+
     def test_a_file_becomes_yaml_that_moves_alike(self):
         self.write("r.xml", four_bar('<connect name="C" body1="coupler" body2="rocker" anchor="0.3 0 0"/>'))
         self.freeplay("convert", "r.xml", "r.yaml")

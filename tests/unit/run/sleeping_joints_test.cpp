@@ -18,7 +18,7 @@ using test::replaced;
 long asked = 0;  // for forces, by all cages since a test began
 
 /// A ball in a cage, in the plane, e = P_b - P_a: F_b = -k (|e| - r) e/|e| where |e| > r, and twice as much in a step
-/// that it was not told of. Remembers its contacts, the deepest, and when the step ends.
+/// for which begin_step() was not called. Remembers its contacts, the deepest, and when the step ends.
 class Cage final : public Joint {
  public:
   explicit Cage(const Parameters& p) : radius_(p.number("radius")), tells_(p.word("promise") == 0) {}

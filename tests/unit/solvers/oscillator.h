@@ -24,7 +24,7 @@ struct Oscillator {
   bool bent = false;
   bool estimates = false;  ///< the run asks for errors, in units of 1 m and 1 m/s
   double allowed = 0.0;    ///< error in velocity that a stage may leave [m/s]; 0: the host tells nothing of guesses
-  double off_rows = 0.0;   ///< what is told of unsolved stages besides
+  double off_rows = 0.0;   ///< what is reported of unsolved stages besides
   double push = 0.0, push_from = 1e300;  ///< further acceleration [m/s2], and since when [s]
   bool internal = true;                  ///< there is z
   int projections = 0, accelerations = 0;
