@@ -25,14 +25,7 @@ class Bypasses {
     for (const JacobianBlock& block : closed.jacobian().blocks()) blocks_.emplace(block.row, &block);
     root_.resize(model_.bodies.size() + 1);  // the last is ground
     std::iota(root_.begin(), root_.end(), 0);
-    const int all = model_.space == Space::planar ? 3 : 6;
-    for (int j = 0; j < joints(); ++j) {
-      if (!is_ideal(j) || closed.layout().rows(j).size < all) continue;
-      const JointElement& joint = model_.joints[at(j)];
-      const int marker = body_of(joint.marker_a) == ground ? joint.marker_b : joint.marker_a;
-      if (rank_of(rows_of(j, marker, Vector3d::Zero(), 0.0)) < all) continue;
-      const int a = group_of(joint.marker_a), b = group_of(joint.marker_b);
-      std::ranges::replace(root_, a, b);
+    while (merge()) {
     }
   }
 
@@ -64,6 +57,26 @@ class Bypasses {
   bool is_ideal(int j) const {
     const JointElement& joint = model_.joints[at(j)];
     return !joint.has_play && joint.gear < 0 && closed_.layout().rows(j).size > 0;
+  }
+
+  /// Makes one of groups that the ideal joints between them fix to each other; true where it found such.
+  bool merge() {
+    std::map<std::pair<int, int>, MatrixXd> between;
+    for (int j = 0; j < joints(); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      const auto groups = std::minmax({group_of(joint.marker_a), group_of(joint.marker_b)});
+      if (!is_ideal(j) || groups.first == groups.second) continue;
+      const int marker = group_of(joint.marker_a) == groups.first ? joint.marker_a : joint.marker_b;
+      MatrixXd& rows = between[groups];
+      rows = stacked(rows, rows_of(j, marker, Vector3d::Zero(), 0.0));
+    }
+    bool merged = false;
+    for (const auto& [groups, rows] : between) {
+      if (rank_of(rows) < (model_.space == Space::planar ? 3 : 6)) continue;
+      std::ranges::replace(root_, groups.first, groups.second);  // ground, the last, stays one
+      merged = true;
+    }
+    return merged;
   }
 
   /// Rows of a joint as of the twist of its part with `marker`, taken at `place`, while the other part stands still.

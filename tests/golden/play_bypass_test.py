@@ -74,7 +74,15 @@ class PlayBypass(ProgramTest):
                 "  rod: {type: distance, between: [a, c], length: 0.2}\nsimulation: {end: 0.1, accuracy: 1 um}\n")
         self.assertEqual(["the play of joint 'loose' is bypassed by joint 'rod', which holds what is fixed to the same two bodies "
                           "without play in one of its directions: delete one of the two joints"], self.bypass(text))
-        self.assertEqual([], self.bypass(text.replace("glue: {type: fixed", "glue: {type: revolute")))
+        pinned = text.replace("glue: {type: fixed", "glue: {type: revolute")
+        self.assertEqual([], self.bypass(pinned))
+        # A pin and a rod that does not go through it hold two bodies together.
+        rod = "\n  brace: {type: distance, between: [b/up, c/out], length: 0.14142135623730951}\nsimulation:"
+        frames = {"2, 0]}}\n  c:": "2, 0]}, frames: {up: [0, 0.1]}}\n  c:", "2, 0]}}\njoints": "2, 0]}, frames: {out: [0.1, 0]}}\njoints",
+                  "\nsimulation:": rod}
+        for old, new in frames.items():
+            pinned = pinned.replace(old, new)
+        self.assertIn("what is fixed to the same two bodies", self.bypass(pinned)[0])
 
 
 if __name__ == "__main__":
