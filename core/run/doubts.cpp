@@ -102,17 +102,17 @@ void RunDoubts::judge_motion() {
 
 void RunDoubts::note_lasting_blows() {
   const LastingBlows::Fewest fewest = blows_.fewest();
-  if (!(fewest.steps < fewest_steps_in_period)) return;
+  if (!(fewest.steps < fewest_steps_of_blow)) return;
   const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(fewest.joint)].name);
   run_.outcome.doubts.push_back(
       {.id = "impact-steps",
        .level = Trust::doubtful,
        .message = fmt::format("{}: a blow that begins a lasting contact took {:g} steps, fewer than {:g}; ask for "
                               "shorter steps, or for an accuracy",
-                              joint, fewest.steps, fewest_steps_in_period),
+                              joint, fewest.steps, fewest_steps_of_blow),
        .element = joint,
        .value = fewest.steps,
-       .limit = fewest_steps_in_period});
+       .limit = fewest_steps_of_blow});
 }
 
 // False where the row shows that going on makes no sense.
