@@ -1,6 +1,7 @@
 #include "assembly/left_free.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 
 #include "assembly/row_space.h"
 #include "base/index.h"
+#include "model/force_element.h"
 
 namespace freeplay {
 
@@ -15,6 +17,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
+constexpr double hangs_below = 0.5;    // cosine from the plumb line
 constexpr double closes_within = 0.1;  // by the size of the model: given poses are guesses
 
 class FreeMotions {
@@ -45,8 +48,8 @@ class FreeMotions {
       names = fmt::format("'{}' and {} others", model_.bodies[at(unrestrained[0])].name, unrestrained.size() - 1);
     found.doubtful = unrestrained.front();
     found.doubt = fmt::format(
-        "{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver, or "
-        "say under 'initial' how it starts",
+        "{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver; what is "
+        "meant to move freely gets a start under 'initial', or a 'pose' with its angle",
         found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
         acts ? "no start is given for" : "nothing acts on", names);
   }
@@ -151,6 +154,11 @@ class FreeMotions {
     return moving;
   }
 
+  static bool acts_along_a_line(const JointElement& joint) {
+    return is_force_element(joint) && joint.ideal_layout.coordinate == Coordinate::none &&
+           joint.parameters->values.contains("free_length");
+  }
+
   template <class IsMoving>
   bool acts_on(const IsMoving& is_moving) const {
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
@@ -167,10 +175,11 @@ class FreeMotions {
                                [&](const AppliedForce& force) { return is_moving(body_of(force.marker)); });
   }
 
-  /// Adds the bodies that joints connect to those that are marked, not by way of ground.
-  void spread(std::vector<char>& reached) const {
+  /// Adds the bodies that joints connect to those that are marked, not by way of ground. `rigidly`: nor of springs.
+  void spread(std::vector<char>& reached, bool rigidly = false) const {
     for (bool more = true; std::exchange(more, false);) {
       for (const JointElement& joint : model_.joints) {
+        if (rigidly && is_force_element(joint)) continue;
         const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
         if (a == ground || b == ground || reached[at(a)] == reached[at(b)]) continue;
         reached[at(a)] = reached[at(b)] = 1;
@@ -193,11 +202,55 @@ class FreeMotions {
     });
   }
 
+  /// Bodies that joints tie to one that a driver moves; the others have nothing but springs to hold their freedoms.
+  std::vector<char> led_by_joints() const {
+    std::vector<char> led(model_.bodies.size(), 0);
+    for (const Driver& driver : model_.drivers) {
+      const JointElement& joint = model_.joints[at(driver.joint)];
+      for (const BodyId body : {body_of(joint.marker_a), body_of(joint.marker_b)}) {
+        if (body != ground) led[at(body)] = 1;
+      }
+    }
+    spread(led, true);
+    return led;
+  }
+
+  /// Whether the body of a marker hangs under the other end of a joint that holds one direction alone: where it is
+  /// given it starts, as a load does.
+  bool hangs_on_a_rope(int j, int marker) const {
+    if (closed_.layout().rows(j).size != 1) return false;
+    const JointElement& joint = model_.joints[at(j)];
+    const Vector3& gravity = model_.bodies[at(body_of(marker))].gravity;
+    const double* own = shut_.markers[at(marker)].position;
+    const double* other = shut_.markers[at(marker == joint.marker_a ? joint.marker_b : joint.marker_a)].position;
+    const double way[3] = {own[0] - other[0], own[1] - other[1], own[2] - other[2]};
+    return way[0] * gravity[0] + way[1] * gravity[1] + way[2] * gravity[2] >
+           hangs_below * std::hypot(way[0], way[1], way[2]) * std::hypot(gravity[0], gravity[1], gravity[2]);
+  }
+
+  /// Of the line between the ends of a spring, by all velocities; none where it has no length.
+  MatrixXd length_rate(const JointElement& joint) const {
+    MatrixXd one = MatrixXd::Zero(1, closed_.layout().nv());
+    const int markers[2] = {joint.marker_a, joint.marker_b}, width = closed_.layout().body_velocities();
+    const double* from = shut_.markers[at(markers[0])].position;
+    const double* to = shut_.markers[at(markers[1])].position;
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]);
+    for (int k = 0; k < 2 && length > 0.0; ++k) {
+      if (body_of(markers[k]) == ground) continue;
+      double twist[6] = {}, row[6];
+      for (int i = 0; i < 3; ++i) twist[i] = (k == 0 ? from[i] - to[i] : to[i] - from[i]) / length;
+      closed_.markers().row(markers[k], twist, shut_, row);
+      for (int c = 0; c < width; ++c) one(0, width * body_of(markers[k]) + c) += row[c];
+    }
+    return one;
+  }
+
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
-  /// what springs alone hold, on a slide or free, or a spring about an axis, and the pose of a body. As poses are also
-  /// guesses for loops, a position without an angle of a body on a pin is none, and that of a body which turns about
-  /// its own centre of mass unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any
-  /// pose of bodies that may_miss_a_joint().
+  /// what springs alone hold, on a slide or free, or a spring about an axis, as many springs as there are freedoms
+  /// where no driver moves what joints tie together, and the pose of a body. As poses are also guesses for loops, a
+  /// position without an angle of a body on a pin is none, and that of a body which turns about its own centre of mass
+  /// unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any pose of bodies that
+  /// may_miss_a_joint().
   template <class IsMoving>
   std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
@@ -214,7 +267,7 @@ class FreeMotions {
       const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
       if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
       for (const int marker : {joint.marker_a, joint.marker_b}) {
-        if (body_of(marker) != ground) jointed[at(body_of(marker))] = 1;
+        if (body_of(marker) != ground && !hangs_on_a_rope(j, marker)) jointed[at(body_of(marker))] = 1;
       }
     }
     for (const JointElement& joint : model_.joints) {
@@ -222,6 +275,15 @@ class FreeMotions {
       for (const BodyId body : {body_of(joint.marker_a), body_of(joint.marker_b)}) {
         if (body != ground && is_moving(body) && !jointed[at(body)]) given = stacked(given, body_rates(body));
       }
+    }
+    const std::vector<char> led = led_by_joints();
+    const auto missing = [&](int marker) {  // a guide rather than a start
+      const BodyId body = body_of(marker);
+      return body != ground && is_moving(body) && led[at(body)];
+    };
+    for (const JointElement& joint : model_.joints) {
+      if (acts_along_a_line(joint) && !missing(joint.marker_a) && !missing(joint.marker_b))
+        given = stacked(given, length_rate(joint));
     }
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));

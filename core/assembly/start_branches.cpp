@@ -282,7 +282,10 @@ void StartBranches::take(std::size_t i) {
 bool StartBranches::joined(const Position& a, const Position& b) const {
   const std::span<double> q = mechanism_.state.q();
   const std::vector<double> before(q.begin(), q.end());
-  const VectorXd way = difference(a.q, b.q);
+  VectorXd way = difference(a.q, b.q);
+  if (mechanism_.model().space == Space::planar) {  // Newton's method may have counted whole turns
+    for (Eigen::Index i = 2; i < way.size(); i += 3) way[i] = wrapped(way[i]);
+  }
   const double length = scaled(system_, way).norm();
   bool as_near = true;
   for (const double part : {0.25, 0.5, 0.75}) {

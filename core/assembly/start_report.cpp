@@ -19,7 +19,32 @@ constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its 
 constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
 
+constexpr double turned = 0.25 * std::numbers::pi;  // that is no matter of taste
+
 double degrees(double angle) { return angle * 180.0 / std::numbers::pi; }
+
+/// A joint that holds the axes of a body as those of ground, or null.
+const JointElement* guide_on_ground(const System& closed, BodyId body) {
+  const Model& model = closed.model();
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    const BodyId a = model.markers[at(joint.marker_a)].body, b = model.markers[at(joint.marker_b)].body;
+    if (joint.gear >= 0 || std::min(a, b) != ground || std::max(a, b) != body) continue;
+    const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+    const int rows = closed.layout().rows(j).size;
+    if (model.space == Space::planar ? rows == 3 || (rows == 2 && slides) : rows == 6 || (rows == 5 && slides))
+      return &joint;
+  }
+  return nullptr;
+}
+
+/// Whether something of the body goes elsewhere where it turns.
+bool has_parts(const Model& model, BodyId body) {
+  const auto away = [](const Vector3& place) { return place != Vector3{}; };
+  return away(model.bodies[at(body)].com) || std::ranges::any_of(model.markers, [&](const Marker& marker) {
+           return marker.body == body && away(marker.position);
+         });
+}
 
 }  // namespace
 
@@ -50,6 +75,13 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
       add(body, "position", "m", poses.shift(b, q), least_shift(b), far_part * size, body.pose_location);
     if (body.angle) add(body, "angle", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
+    if (body.position && !body.angle && !body.rotation) {
+      const Pose pose = closed.coordinates().frame_pose(b, q);
+      const double* r = pose.rotation;
+      const double angle = std::acos(std::clamp(0.5 * (r[0] + r[4] + r[8] - 1.0), -1.0, 1.0));
+      const JointElement* guide = angle > turned && has_parts(model, b) ? guide_on_ground(closed, b) : nullptr;
+      if (guide != nullptr) out.push_back({body.name, "turn", "rad", angle, false, body.pose_location, guide->name});
+    }
     if (!body.velocity_given && !body.angular_velocity_given) continue;
     double wanted[6], is[6];
     closed.coordinates().body_twist(b, q, given, wanted);
@@ -123,6 +155,12 @@ std::string sentence(const MovedStart& moved) {
   const std::string by =
       turns ? fmt::format("{:.3g} deg", degrees(moved.by)) : fmt::format("{:.3g} {}", moved.by, moved.unit);
   const char* const far = moved.far ? ": that is far, correct it or leave it out" : "";
+  if (moved.quantity == "turn") {
+    return fmt::format(
+        "body '{}' starts turned by {} with all its frames, as joint '{}' holds it: its `pose` gives a "
+        "position alone",
+        moved.body, by, moved.joint);
+  }
   if (!moved.joint.empty()) {
     return fmt::format("the journal of joint '{}' starts {} from the {} that `clearance.initial` gives{}", moved.joint,
                        by, moved.quantity, far);

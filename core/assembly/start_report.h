@@ -14,12 +14,13 @@ namespace freeplay {
 /// A start value of the file that the start does not have.
 struct MovedStart {
   std::string body;      ///< empty for the journal of a joint
-  std::string quantity;  ///< "position", "angle", "orientation", "velocity", "angular velocity" or "eccentricity"
+  std::string quantity;  ///< "position", "angle", "orientation", "velocity", "angular velocity", "eccentricity", or
+                         ///< "turn" of a body whose pose gives no angle, where a guide on ground turns its frames
   std::string unit;      ///< m, rad, m/s or rad/s
   double by = 0.0;       ///< how far it was moved
   bool far = false;      ///< by more than 10 degrees, or 10 % of the size of the model or of the given velocity
   Location location;     ///< of the key that gives it, or of the joint
-  std::string joint{};   ///< with play, whose block gives it
+  std::string joint{};   ///< with play, whose block gives it; of a turn the guide
 };
 
 /// A position that is as near to what the file gives as the one that was taken.

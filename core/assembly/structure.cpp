@@ -16,6 +16,7 @@
 
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
+#include "assembly/play_bypass.h"
 #include "assembly/play_gap.h"
 #include "assembly/play_rows.h"
 #include "assembly/row_space.h"
@@ -54,6 +55,7 @@ class Examination {
     judge_accuracy();
     judge_journals();
     judge_pairs();
+    judge_bypasses();
     judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
     const MatrixXd open = constraint_matrix(released_.jacobian(), open_);
@@ -267,7 +269,8 @@ class Examination {
   void judge_pairs() {
     std::map<std::pair<BodyId, BodyId>, std::vector<int>> pairs;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      if (model_.joints[at(j)].gear >= 0 || closed_.layout().rows(j).size == 0) continue;
+      if (model_.joints[at(j)].has_play || model_.joints[at(j)].gear >= 0 || closed_.layout().rows(j).size == 0)
+        continue;
       pairs[std::minmax(body_of(model_.joints[at(j)].marker_a), body_of(model_.joints[at(j)].marker_b))].push_back(j);
     }
     for (const auto& [bodies, joints] : pairs) {
@@ -285,20 +288,7 @@ class Examination {
     const int both = rank_of(stacked(a, b)), rank_a = rank_of(a), rank_b = rank_of(b);
     const JointElement& one = model_.joints[at(first)];
     const JointElement& other = model_.joints[at(second)];
-    if (one.has_play != other.has_play) {
-      const int loose = one.has_play ? first : second;
-      const std::string& ideal = (one.has_play ? other : one).name;
-      if (both == (one.has_play ? rank_b : rank_a)) {
-        return bypass(loose, fmt::format("'{}', which holds the same two bodies without play", ideal),
-                      "delete one of the two joints, or give both clearance");
-      }
-      // In space a thrust bearing beside a journal is sound.
-      return model_.space == Space::planar && both < rank_a + rank_b &&
-             bypass(loose,
-                    fmt::format("'{}', which holds the same two bodies without play in one of its directions", ideal),
-                    "delete one of the two joints");
-    }
-    if (one.has_play || (both > rank_a && both > rank_b)) return false;
+    if (both > rank_a && both > rank_b) return false;
     const JointElement& idle = both == rank_a ? other : one;
     const JointElement& holder = both == rank_a ? one : other;
     return doubt("duplicate-joint",
@@ -308,11 +298,26 @@ class Examination {
                  idle.name, idle.location);
   }
 
-  bool bypass(int joint, const std::string& by, const std::string& remedy) {
+  void judge_bypasses() {
+    for (const PlayBypass& found : play_bypasses(closed_, shut_)) {
+      const bool one = found.by.size() == 1;
+      const char* much = found.whole             ? "without play"
+                         : found.directions == 1 ? "without play in one of its directions"
+                                                 : "without play in some of its directions";
+      bypass(found.joint,
+             fmt::format("{}, which hold{} {} {}", joint_names(found.by, model_), one ? "s" : "",
+                         found.direct ? "the same two bodies" : "what is fixed to the same two bodies", much),
+             !one          ? "delete one of them, or give all of them clearance"
+             : found.whole ? "delete one of the two joints, or give both clearance"
+                           : "delete one of the two joints");
+    }
+  }
+
+  void bypass(int joint, const std::string& by, const std::string& remedy) {
     bypassed_.push_back(joint);
     const JointElement& loose = model_.joints[at(joint)];
-    return doubt("play-bypassed", fmt::format("the play of joint '{}' is bypassed by {}: {}", loose.name, by, remedy),
-                 loose.name, loose.location);
+    doubt("play-bypassed", fmt::format("the play of joint '{}' is bypassed by {}: {}", loose.name, by, remedy),
+          loose.name, loose.location);
   }
 
   // --- the whole mechanism ---------------------------------------------------------------------------------------

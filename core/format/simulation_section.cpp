@@ -253,9 +253,21 @@ class SimulationSection {
   }
 
   void read_stop(const CheckedValue& value) {
+    if (is_condition_in_words(value)) return;
     const auto items = value.list();
     if (!items) return;
-    for (const CheckedValue& item : *items) read_condition(item);
+    for (const CheckedValue& item : *items) {
+      if (!is_condition_in_words(item)) read_condition(item);
+    }
+  }
+
+  /// What is plain elsewhere, as "t above 7 ms", says here how a condition is written. True after a message.
+  static bool is_condition_in_words(const CheckedValue& value) {
+    const Node& node = value.node();
+    if (!node.is_scalar() || node.text.find(' ') == std::string::npos) return false;
+    value.fail("wrong-type", "'" + value.path() + "' is a condition in words", {},
+               "write a list of maps, as [{channel: time, above: 7 ms}]; where only a time is meant, 'end'");
+    return true;
   }
 
   void read_condition(const CheckedValue& value) {

@@ -59,7 +59,11 @@ void check_limit(const StopCondition& condition, const ChannelInfo& channel, Dia
   if (fits(condition.quantity, wanted)) return;
   diagnostics.error(condition.quantity_location, 1, "dimension-mismatch",
                     fmt::format("the limit of '{}' must be of {}, not of {}", channel.name, dimension_name(wanted),
-                                dimension_name(condition.quantity.dimension)));
+                                dimension_name(condition.quantity.dimension)),
+                    {},
+                    wanted == dimension::none && condition.quantity.dimension == dimension::time
+                        ? "in a formula t is a number of seconds; a time is limited by `channel: time`, or by `end`"
+                        : "");
 }
 
 /// Names of channels, to look for what was meant.

@@ -130,7 +130,7 @@ Json start_json(const Model& model, const Start& start) {
 Json start_changes_json(const Model& model, const StartReport& report) {
   Json moved = Json::array(), chosen = Json::array();
   for (const MovedStart& one : report.moved) {
-    const bool of_joint = !one.joint.empty();
+    const bool of_joint = one.body.empty();
     moved.push_back({{of_joint ? "joint" : "body", of_joint ? one.joint : one.body},
                      {"quantity", one.quantity},
                      {"by", one.by},

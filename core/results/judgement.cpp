@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "results/load_judgement.h"
+#include "run/lasting_blows.h"
 #include "run/motion_period.h"
 
 namespace freeplay {
@@ -20,8 +21,7 @@ constexpr Limits of_energy{1e-2, 1e-1};           // residual by what was moved
 constexpr double part_of_kinetic = 0.1;           // of the largest kinetic energy counts as moved
 constexpr double least_energy = 1e-6;             // by masses lifted by the model's size, or crossing it in the run
 constexpr Limits of_position{1e-6, 1e-3};         // residual of the constraints by the model's size
-constexpr double fewest_steps = 10.0;             // of a hard impact
-constexpr double fewest_steps_of_accuracy = 5.0;  // the error is controlled besides
+constexpr double fewest_steps_of_accuracy = 5.0;  // of a hard impact: the error is controlled besides
 constexpr Limits of_radius{1e-2, 1e-1};           // penetration by the smaller radius
 constexpr double of_clearance = 1.0;              // penetration by the clearance
 constexpr Limits of_open_radius{1e-1, 0.5};       // by a radius without a clearance, as of discs
@@ -161,7 +161,7 @@ void judge_singular(const RunRecord& record, Verdict& verdict) {
 
 void judge_steps_per_impact(const RunRecord& record, Verdict& verdict) {
   const double steps = record.advice.fewest_steps_of_hard();
-  const double limit = record.model.settings.adaptive ? fewest_steps_of_accuracy : fewest_steps;
+  const double limit = record.model.settings.adaptive ? fewest_steps_of_accuracy : fewest_steps_of_blow;
   if (!(steps < limit)) return;
   verdict.add({.id = "impact-steps",
                .level = Trust::doubtful,

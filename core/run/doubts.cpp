@@ -11,7 +11,6 @@
 #include "base/index.h"
 #include "component/joint_roles.h"
 #include "model/whole_mass.h"
-#include "run/likely_cause.h"
 
 namespace freeplay {
 namespace {
@@ -103,17 +102,17 @@ void RunDoubts::judge_motion() {
 
 void RunDoubts::note_lasting_blows() {
   const LastingBlows::Fewest fewest = blows_.fewest();
-  if (!(fewest.steps < fewest_steps_in_period)) return;
+  if (!(fewest.steps < fewest_steps_of_blow)) return;
   const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(fewest.joint)].name);
   run_.outcome.doubts.push_back(
       {.id = "impact-steps",
        .level = Trust::doubtful,
        .message = fmt::format("{}: a blow that begins a lasting contact took {:g} steps, fewer than {:g}; ask for "
                               "shorter steps, or for an accuracy",
-                              joint, fewest.steps, fewest_steps_in_period),
+                              joint, fewest.steps, fewest_steps_of_blow),
        .element = joint,
        .value = fewest.steps,
-       .limit = fewest_steps_in_period});
+       .limit = fewest_steps_of_blow});
 }
 
 // False where the row shows that going on makes no sense.
@@ -129,33 +128,12 @@ bool RunDoubts::watch_row(double dt) {
   const bool runs_away = joint < 0 && run_.watch.runaway() >= 0;
   if (joint < 0 && !runs_away) return true;
   TrustReason reason = runs_away ? run_.watch.why_runaway(recorder_.row()) : run_.watch.why(joint, recorder_.row());
-  std::string cause = likely_cause(run_.system, run_.e_accepted,
-                                   {run_.accepted.t(), run_.adaptive ? 0.0 : dt, joint, run_.first_forces});
-  if (cause.empty() && runs_away) cause = hardest_worker();
+  std::string cause = failure_.likely_cause_at(run_.accepted.t(), dt, joint);
+  if (cause.empty() && runs_away) cause = failure_.hardest_worker(0.0);
   if (!cause.empty()) reason.message += std::string(cause_words) + cause;
   failure_.fail(4, reason.message);
   run_.outcome.doubts.push_back(std::move(reason));
   return false;
-}
-
-// Of drivers and forces the one with the largest work, which nothing takes out of the mechanism.
-std::string RunDoubts::hardest_worker() const {
-  double most = 0.0;
-  std::string text;
-  const auto look = [&](double work, const char* kind, const std::string& name) {
-    if (!(work > most)) return;
-    most = work;
-    text = fmt::format("{} '{}' has put {:.3g} J into {:.3g} kg", kind, name, work, whole_mass(run_.model).mass);
-  };
-  for (std::size_t d = 0; d < run_.model.drivers.size(); ++d)
-    look(run_.energy.driver_work()[d], "driver", run_.model.drivers[d].name);
-  for (std::size_t f = 0; f < run_.model.force_elements.size(); ++f) {
-    const ForceElement& element = run_.model.force_elements[f];
-    look(
-        run_.energy.force_work()[f], "force",
-        element.applied >= 0 ? run_.model.forces[at(element.applied)].name : run_.model.joints[at(element.joint)].name);
-  }
-  return text;
 }
 
 // Once for each joint; the text is made when the run is over.

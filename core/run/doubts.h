@@ -35,8 +35,6 @@ class RunDoubts {
   void restore(ArchiveReader& archive);
 
  private:
-  std::string hardest_worker() const;
-
   struct Warning {
     const char* text = nullptr;
     double time = 0.0;

@@ -10,11 +10,14 @@
 #include "assembly/out_of_reach.h"
 #include "base/index.h"
 #include "component/own_types.h"
+#include "model/whole_mass.h"
 #include "run/likely_cause.h"
 
 namespace freeplay {
 namespace {
-constexpr double singular = 1e-4;  // regularity
+constexpr double singular = 1e-4;       // regularity
+constexpr double fast_for_all = 100.0;  // speed of all masses at the energy of motion [m/s]
+constexpr double most_of_energy = 0.5;
 }  // namespace
 
 bool RunFailure::fail(int exit_code, std::string reason) {
@@ -184,6 +187,36 @@ std::string RunFailure::why_so_small(double dt, double smallest, int limiting_jo
   return text + std::string(advice::error);
 }
 
+std::string RunFailure::likely_cause_at(double t, double dt, int joint) const {
+  const double mass = whole_mass(run_.model).mass, energy = run_.system.inertia().kinetic_energy(run_.e_accepted->v);
+  const double speed = std::sqrt(2.0 * energy / mass);
+  std::string worker;
+  if (speed > fast_for_all && is_on_ground(run_.model)) worker = hardest_worker(most_of_energy * energy);
+  if (!worker.empty())
+    worker += fmt::format(", the energy of all of it at {:.3g} m/s: check its number and unit", speed);
+  return likely_cause(run_.system, run_.e_accepted,
+                      {t, run_.adaptive ? 0.0 : dt, joint, run_.first_forces, std::move(worker)});
+}
+
+// Of drivers and forces the one with the largest work above `least` [J], which nothing takes out of the mechanism.
+std::string RunFailure::hardest_worker(double least) const {
+  std::string text;
+  const auto look = [&](double work, const char* kind, const std::string& name) {
+    if (!(work > least)) return;
+    least = work;
+    text = fmt::format("{} '{}' has put {:.3g} J into {:.3g} kg", kind, name, work, whole_mass(run_.model).mass);
+  };
+  for (std::size_t d = 0; d < run_.model.drivers.size(); ++d)
+    look(run_.energy.driver_work()[d], "driver", run_.model.drivers[d].name);
+  for (std::size_t f = 0; f < run_.model.force_elements.size(); ++f) {
+    const ForceElement& element = run_.model.force_elements[f];
+    look(
+        run_.energy.force_work()[f], "force",
+        element.applied >= 0 ? run_.model.forces[at(element.applied)].name : run_.model.joints[at(element.joint)].name);
+  }
+  return text;
+}
+
 // Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
 std::string RunFailure::why_energy_grows(double dt, double gained) {
   if (run_.model.clearance_joints() == 0) {
@@ -196,8 +229,7 @@ std::string RunFailure::why_energy_grows(double dt, double gained) {
   const int joint = hardest_joint(ground);
   if (joint >= 0)
     text += fmt::format("; joint '{}' pulls hardest", run_.model.joints[static_cast<std::size_t>(joint)].name);
-  const std::string cause = likely_cause(run_.system, run_.e_accepted,
-                                         {run_.accepted.t(), run_.adaptive ? 0.0 : dt, joint, run_.first_forces});
+  const std::string cause = likely_cause_at(run_.accepted.t(), dt, joint);
   if (!cause.empty()) return text + std::string(cause_words) + cause;
   return text + std::string(run_.settings.accuracy > 0.0 ? advice::jump : advice::accuracy);
 }
@@ -213,8 +245,7 @@ std::string RunFailure::why_beyond_bounds(double t, int joint) const {
   const int hardest = joint >= 0 ? joint : hardest_joint(ground);
   if (hardest >= 0)
     text += fmt::format(", first in joint '{}'", run_.model.joints[static_cast<std::size_t>(hardest)].name);
-  const std::string cause = likely_cause(run_.system, run_.e_accepted,
-                                         {t, run_.adaptive ? 0.0 : run_.settings.step, hardest, run_.first_forces});
+  const std::string cause = likely_cause_at(t, run_.settings.step, hardest);
   return text + (cause.empty() ? std::string(advice::accuracy) : std::string(cause_words) + cause);
 }
 
@@ -307,8 +338,7 @@ void RunFailure::explain_failure() {
        {"[dead-point]", "[locked]", "[ik-unreachable]", "[bad-expression]", "[event-storm]"}) {
     if (run_.outcome.reason.ends_with(id)) return;
   }
-  const Wreck wreck{run_.accepted.t(), run_.adaptive ? 0.0 : run_.settings.step, failed_joint_, run_.first_forces};
-  const std::string cause = likely_cause(run_.system, run_.e_accepted, wreck);
+  const std::string cause = likely_cause_at(run_.accepted.t(), run_.settings.step, failed_joint_);
   if (cause.empty()) return;
   for (const std::string_view advice :
        {advice::smaller_step, advice::accuracy, advice::other_steps, advice::jump, advice::error}) {

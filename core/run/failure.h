@@ -45,6 +45,10 @@ class RunFailure {
   [[gnu::cold]] std::string why_so_small(double dt, double smallest, int limiting_joint) const;
   /// `gained`: energy without work in a step of length dt [J].
   [[gnu::cold]] std::string why_energy_grows(double dt, double gained);
+  /// likely_cause() at t [s] with steps of dt [s] and the joint that went wrong, or -1; where no number is out of range
+  /// and everything moves faster than in machines, what put the energy in.
+  [[gnu::cold]] std::string likely_cause_at(double t, double dt, int joint) const;
+  [[gnu::cold]] std::string hardest_worker(double least) const;
   std::string row_name(int row_index) const;
   bool all_built_in() const;
 

@@ -7,6 +7,9 @@
 
 namespace freeplay {
 
+/// Steps in the half wave of a force that give its peak to about a per cent with a method of order two.
+inline constexpr double fewest_steps_of_blow = 10.0;
+
 /// Steps of one size that damp what they do not resolve let a journal stay in its bearing after a blow that it would
 /// rebound from, with a peak that is too low. Here a blow goes from the beginning of the force of a joint with play to
 /// the place where it rises again, after a fall to less than half of its peak.

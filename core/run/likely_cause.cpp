@@ -260,6 +260,7 @@ std::string likely_cause(const System& system, const Evaluation& e, const Wreck&
   suspect_materials(system, suspects);
   suspect_motion(system, wreck, suspects);
   suspect_loads(system, e, wreck, suspects);
+  if (suspects.sentence().empty() && !wreck.worker.empty()) return wreck.worker;
   // Where the model is sound, or seems to be.
   if (suspects.sentence().empty()) suspect_step(system, e, wreck, suspects);
   if (suspects.sentence().empty()) suspect_soft_joint(system, wreck, suspects);

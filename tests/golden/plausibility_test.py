@@ -78,7 +78,13 @@ MISTAKES = [
     (CRANK, GUIDE, GUIDE + GUIDE.replace("guide", "guide2"), "duplicate-joint", "guide2", "'guide'"),
     (CRANK, GUIDE, GUIDE + "  pin: {type: revolute, between: [coupler/tip, slider]}\n", "play-bypassed", "wrist", "'pin'"),
     (CRANK, "joints:\n", "  block: {mass: 0.1, inertia: 1e-5}\njoints:\n  glue: {type: fixed, between: [slider, block]}\n"
-                         "  pin: {type: revolute, between: [coupler/tip, block]}\n", "play-bypassed", "wrist", "nowhere"),
+                         "  pin: {type: revolute, between: [coupler/tip, block]}\n", "play-bypassed", "wrist", "what is fixed to the same"),
+    # A triangle of pins.
+    (CRANK, "joints:\n", "  block: {mass: 0.1, inertia: 1e-4, frames: {low: [0, -0.1], up: [0, 0.1]}, pose: {position: [0.14, 0], angle: 0}}\n"
+     "  strut: {mass: 0.1, inertia: 1e-4, com: [-0.05, 0.05], frames: {up: [-0.1, 0.1]}, pose: {position: [0.24, 0], angle: 0}}\n"
+     "joints:\n  foot: {type: revolute, between: [slider/low, block/low]}\n  side: {type: revolute, between: [slider/side, strut]}\n"
+     "  top: {type: revolute, between: [strut/up, block/up]}\n  pin: {type: revolute, between: [coupler/tip, block]}\n", "play-bypassed",
+     "wrist", "nowhere", {"slider: {": "slider: {frames: {low: [0, -0.1], side: [0.1, 0]}, "}),
     (CRANK, GUIDE, "", "left-free", "coupler", "guide"),
     (CRANK, "slider: {mass", "extra: {mass: 1, inertia: 0.01}\n  slider: {mass", "not-connected", "extra", "'extra'"),
     (CRANK, "slider: {mass", "one: {mass: 1, inertia: 0.01}\n  two: {mass: 1, inertia: 0.01}\n  slider: {mass", "not-connected", "one",

@@ -101,6 +101,15 @@ constexpr Answer of_outputs[] = {
 
 constexpr Answer of_conditions[] = {
     {"3", "8:40 wrong-type: 'simulation.stop' must be a list, not a scalar"},
+    {"t above 7 ms",
+     "8:40 wrong-type: 'simulation.stop' is a condition in words | write a list of maps, as [{channel: time, above: 7 "
+     "ms}]; where only a time is meant, 'end'"},
+    {"[time > 7 ms]",
+     "8:41 wrong-type: 'simulation.stop[0]' is a condition in words | write a list of maps, as [{channel: time, above: "
+     "7 ms}]; where only a time is meant, 'end'"},
+    {"[{value: t, above: 7 ms}]",
+     "8:59 dimension-mismatch: the limit of 'output.stop1' must be of angle or number, not of time | in a formula t is "
+     "a number of seconds; a time is limited by `channel: time`, or by `end`"},
     {"[3]", "8:41 wrong-type: 'simulation.stop[0]' must be a map, not a scalar"},
     {"[{}]",
      "8:41 missing-key: missing key 'channel' in 'simulation.stop[0]'\n8:41 missing-key: missing key 'above' in "

@@ -1,0 +1,84 @@
+"""Freedoms that drivers leave: loads on ropes and what springs carry are meant, a missing guide or spring is not."""
+import json
+import unittest
+
+from program import ProgramTest
+
+CRANE = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  trolley: {mass: 400 kg, inertia: 20}
+  hook: {mass: 1500 kg, inertia: 100, pose: {position: [%s]}}
+frames: {ground/rail: [0, 5]}
+joints:
+  rail: {type: prismatic, between: [ground/rail, trolley]}
+  rope: {type: distance, between: [trolley, hook], length: 4 m}
+drivers: {drive: {joint: rail, kind: position, value: "6 m*smooth(t, 1 s, 8 s)"}}
+simulation: {end: 15 s, accuracy: 0.1 mm}
+"""
+# A double wishbone on a wheel that a plate shakes.
+SUSPENSION = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  car: {mass: 320, inertia: 60, frames: {v: {angle: 90 deg}, lo: [0.35, 0.05], up: [0.4, 0.25], top: [0.45, 0.55]}, pose: {position: [0, 0.25]}}
+  lower: {mass: 5, inertia: 0.06, com: [0.17, 0], frames: {ball: [0.36, 0], shock: [0.22, 0]}, pose: {position: [0.35, 0.3]}}
+  upper: {mass: 3, inertia: 0.03, com: [0.12, 0], frames: {ball: [0.28, 0]}, pose: {position: [0.4, 0.5]}}
+  knuckle: {mass: 38, inertia: 0.8, frames: {lo: [-0.06, -0.1], up: [-0.07, 0.1]}, pose: {position: [0.77, 0.4]}}
+  plate: {mass: 10, inertia: 1, frames: {v: {angle: 90 deg}}, pose: {position: [0.77, 0]}}
+frames: {ground/v: {angle: 90 deg}, ground/p: {position: [0.77, 0], angle: 90 deg}}
+joints:
+  body: {type: prismatic, between: [ground/v, car/v]}
+  li: {type: revolute, between: [car/lo, lower]}
+  ui: {type: revolute, between: [car/up, upper]}
+  lo: {type: revolute, between: [lower/ball, knuckle/lo]}
+  uo: {type: revolute, between: [upper/ball, knuckle/up]}
+  road: {type: prismatic, between: [ground/p, plate/v]}
+drivers: {road: {joint: road, kind: position, value: "40 mm*smooth(t, 0.5, 0.6)"}}
+forces:
+  shock: {type: spring-damper, between: [car/top, lower/shock], stiffness: 45 kN/m, free_length: 0.56}
+  tyre: {type: spring-damper, between: [plate, knuckle], stiffness: 200 kN/m, free_length: 0.42}
+simulation: {end: 2 s, accuracy: 10 um}
+"""
+
+
+class LeftFree(ProgramTest):
+    def doubts(self, text, **changes):
+        for old, new in changes.items():
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        found = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json")[0])["messages"]
+        return [m["message"] for m in found if m["id"] == "left-free"]
+
+    def test_a_load_on_a_rope_hangs_where_it_is_given(self):
+        for place in ("0, 1", "2, 1.535898384862245", "-3.4, 2.892869249429452"):
+            with self.subTest(place):
+                self.assertEqual([], self.doubts(CRANE % place))
+
+    def test_what_stands_beside_or_on_a_bar_misses_its_guide(self):
+        """The coupler of a crank is such a bar, too, and so is a body whose place is not given."""
+        for place in ("4, 5", "0, 9"):
+            with self.subTest(place):
+                found = self.doubts(CRANE % place)
+                self.assertEqual(1, len(found))
+                self.assertIn("1 freedom is left over with all drivers at rest, and no start is given for 'hook': add the missing guide, joint "
+                              "or driver; what is meant to move freely gets a start under 'initial', or a 'pose' with its angle", found[0])
+                # That it is meant can be said so.
+                self.assertEqual([], self.doubts((CRANE % place).replace("]}}", "], angle: 0}}")))
+        self.assertEqual(1, len(self.doubts(CRANE.replace(", pose: {position: [%s]}", ""))))
+
+    def test_as_many_springs_as_freedoms_carry_what_no_driver_is_joined_to(self):
+        self.assertEqual([], self.doubts(SUSPENSION))
+        for old, new in (("  shock: {type: spring-damper, between: [car/top, lower/shock], stiffness: 45 kN/m, free_length: 0.56}\n", ""),
+                         ("  tyre: {type: spring-damper, between: [plate, knuckle], stiffness: 200 kN/m, free_length: 0.42}\n", ""),
+                         ("  body: {type: prismatic, between: [ground/v, car/v]}\n", ""),
+                         ("  uo: {type: revolute, between: [upper/ball, knuckle/up]}\n", ""),
+                         # Both along one line hold one freedom.
+                         ("[plate, knuckle]", "[car/top, lower/shock]"),
+                         # A driver on a wishbone leads the rest: springs hold less than what is missing then.
+                         ("{joint: road, kind: position, value: \"40 mm*smooth(t, 0.5, 0.6)\"}", "{joint: li, kind: angle, value: 0.1*t}")):
+            with self.subTest(old):
+                self.assertEqual(1, len(self.doubts(SUSPENSION, **{old: new})))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,89 @@
+"""A play that an ideal joint takes, in all directions or in one, beside it or by way of what is fixed to its bodies."""
+import json
+import unittest
+
+from program import ProgramTest
+
+# A rotor in a journal bearing with play, to which a test adds a joint; a cap is fixed to ground.
+SHAFT = """freeplay: 1
+space: spatial
+bodies:
+  rotor: {mass: 2, inertia: [1e-3, 1e-3, 2e-3], com: [0, 0, 0.1], frames: {near: [0, 0, 0], far: [0, 0, 0.2], rim: [0.1, 0, 0.2]}}
+  cap: {mass: 0.1, inertia: [1e-4, 1e-4, 1e-4], frames: {far: [0, 0, 0.2]}}
+frames: {ground/far: [0, 0, 0.2], ground/side: [0.2, 0, 0]}
+joints:
+  one: {type: %s, between: [ground, rotor], clearance: {bearing_radius: 8 mm, radial_clearance: 0.05 mm, %scontact: {law: hertz, K: 1e9}}}
+  glue: {type: fixed, between: [ground, cap]}
+  more: {%s}
+simulation: {end: 0.1, accuracy: 1 um}
+"""
+PIN, BALL, SLEEVE = ("revolute", "length: 10 mm, "), ("spherical", ""), ("cylindrical", "length: 10 mm, ")
+ALL, SOME, ONE = "without play", "without play in some of its directions", "without play in one of its directions"
+BY = "the play of joint 'one' is bypassed by joint 'more', which holds %s %s: delete one of the two joints%s"
+SAME, FIXED = "the same two bodies", "what is fixed to the same two bodies"
+
+
+class PlayBypass(ProgramTest):
+    def bypass(self, text):
+        found = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json")[0])["messages"]
+        return [m["message"] for m in found if m["id"] == "play-bypassed"]
+
+    def test_in_space_it_is_found_by_direction(self):
+        for kind, more, who, much in [
+                (PIN, "type: revolute, between: [ground/far, rotor/far]", SAME, ALL),
+                (PIN, "type: cylindrical, between: [ground, rotor]", SAME, SOME),  # slides along the axis
+                (PIN, "type: spherical, between: [ground, rotor/near]", SAME, SOME),
+                (PIN, "type: spherical, between: [cap, rotor/near]", FIXED, SOME),
+                (PIN, "type: distance, between: [ground/side, rotor/near], length: 0.2", SAME, ONE),
+                (SLEEVE, "type: spherical, between: [ground, rotor/near]", SAME, SOME),
+                (BALL, "type: distance, between: [ground/side, rotor/near], length: 0.2", SAME, ONE),
+                (BALL, "type: distance, between: [cap/far, rotor/near], length: 0.2", FIXED, ONE),
+                (BALL, "type: point-on-plane, between: [ground, rotor/near]", SAME, ONE),
+                (BALL, "type: spherical, between: [cap, rotor/near]", FIXED, ALL)]:
+            with self.subTest((kind, more)):
+                text = (SHAFT % (*kind, more))
+                self.assertEqual([BY % (who, much, ", or give both clearance" if much == ALL else "")], self.bypass(text))
+
+    def test_what_leaves_the_journal_its_play_is_sound(self):
+        """A thrust bearing, a second bearing at the other end about which the shaft tilts, a rod to another place."""
+        for kind, more in [
+                (PIN, "type: point-on-plane, between: [ground, rotor/near]"),
+                (PIN, "type: distance, between: [ground/far, rotor/near], length: 0.2"),
+                (PIN, "type: spherical, between: [ground/far, rotor/far]"),
+                (SLEEVE, "type: spherical, between: [ground/far, rotor/far]"),
+                (SLEEVE, "type: point-on-plane, between: [cap, rotor/near]"),
+                (BALL, "type: spherical, between: [ground/far, rotor/far]"),
+                (BALL, "type: distance, between: [ground/side, rotor/rim], length: 0.22360679774997896")]:
+            with self.subTest((kind, more)):
+                text = (SHAFT % (*kind, more))
+                self.assertEqual([], self.bypass(text))
+
+    def test_a_journal_that_starts_off_its_centre_is_judged_as_one_in_it(self):
+        for eccentricity in ("[0.02 mm, 0, 0]", "[0, 0.05 mm, 0]", "[0, 0, -0.04 mm]"):
+            text = (SHAFT % ("spherical", "initial: {eccentricity: %s}, " % eccentricity,
+                             "type: distance, between: [cap/far, rotor/near], length: 0.2"))
+            with self.subTest(eccentricity):
+                self.assertEqual([BY % (FIXED, ONE, "")], self.bypass(text))
+
+    def test_in_the_plane_bodies_that_are_fixed_count_too(self):
+        text = ("freeplay: 1\nbodies:\n  a: {mass: 1, inertia: 1e-2, frames: {tip: [0.2, 0]}}\n"
+                "  b: {mass: 1, inertia: 1e-2, pose: {position: [0.2, 0]}}\n  c: {mass: 1, inertia: 1e-2, pose: {position: [0.2, 0]}}\n"
+                "joints:\n  main: {type: revolute, between: [ground, a]}\n"
+                "  loose: {type: revolute, between: [a/tip, b], clearance: {bearing_radius: 8 mm, radial_clearance: 0.05 mm, "
+                "contact: {law: hertz, K: 1e9}}}\n  glue: {type: fixed, between: [b, c]}\n"
+                "  rod: {type: distance, between: [a, c], length: 0.2}\nsimulation: {end: 0.1, accuracy: 1 um}\n")
+        self.assertEqual(["the play of joint 'loose' is bypassed by joint 'rod', which holds what is fixed to the same two bodies "
+                          "without play in one of its directions: delete one of the two joints"], self.bypass(text))
+        pinned = text.replace("glue: {type: fixed", "glue: {type: revolute")
+        self.assertEqual([], self.bypass(pinned))
+        # A pin and a rod that does not go through it hold two bodies together.
+        rod = "\n  brace: {type: distance, between: [b/up, c/out], length: 0.14142135623730951}\nsimulation:"
+        frames = {"2, 0]}}\n  c:": "2, 0]}, frames: {up: [0, 0.1]}}\n  c:", "2, 0]}}\njoints": "2, 0]}, frames: {out: [0.1, 0]}}\njoints",
+                  "\nsimulation:": rod}
+        for old, new in frames.items():
+            pinned = pinned.replace(old, new)
+        self.assertIn("what is fixed to the same two bodies", self.bypass(pinned)[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
