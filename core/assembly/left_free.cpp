@@ -228,6 +228,22 @@ class FreeMotions {
            hangs_below * std::hypot(way[0], way[1], way[2]) * std::hypot(gravity[0], gravity[1], gravity[2]);
   }
 
+  /// Lengths of springs between bodies of which none that moves is tied to a driver: those miss a guide rather.
+  template <class IsMoving>
+  MatrixXd held_by_springs(const IsMoving& is_moving) const {
+    MatrixXd rows(0, closed_.layout().nv());
+    const std::vector<char> led = led_by_joints();
+    const auto missing = [&](int marker) {
+      const BodyId body = body_of(marker);
+      return body != ground && is_moving(body) && led[at(body)];
+    };
+    for (const JointElement& joint : model_.joints) {
+      if (acts_along_a_line(joint) && !missing(joint.marker_a) && !missing(joint.marker_b))
+        rows = stacked(rows, length_rate(joint));
+    }
+    return rows;
+  }
+
   /// Of the line between the ends of a spring, by all velocities; none where it has no length.
   MatrixXd length_rate(const JointElement& joint) const {
     MatrixXd one = MatrixXd::Zero(1, closed_.layout().nv());
@@ -276,15 +292,7 @@ class FreeMotions {
         if (body != ground && is_moving(body) && !jointed[at(body)]) given = stacked(given, body_rates(body));
       }
     }
-    const std::vector<char> led = led_by_joints();
-    const auto missing = [&](int marker) {  // a guide rather than a start
-      const BodyId body = body_of(marker);
-      return body != ground && is_moving(body) && led[at(body)];
-    };
-    for (const JointElement& joint : model_.joints) {
-      if (acts_along_a_line(joint) && !missing(joint.marker_a) && !missing(joint.marker_b))
-        given = stacked(given, length_rate(joint));
-    }
+    given = stacked(given, held_by_springs(is_moving));
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       if (is_moving(b) && has_velocity(model_.bodies[at(b)])) given = stacked(given, body_rates(b));
     }

@@ -46,6 +46,20 @@ bool has_parts(const Model& model, BodyId body) {
          });
 }
 
+double turn_of(const System& closed, BodyId body, std::span<const double> q) {
+  const Pose pose = closed.coordinates().frame_pose(body, q);
+  const double* r = pose.rotation;
+  return std::acos(std::clamp(0.5 * (r[0] + r[4] + r[8] - 1.0), -1.0, 1.0));
+}
+
+/// The guide that turns what stands on a body whose pose gives no angle, or null.
+const JointElement* turned_by(const System& closed, BodyId id, std::span<const double> q) {
+  const Body& body = closed.model().bodies[at(id)];
+  const bool given = !body.position || body.angle || body.rotation;
+  if (given || !has_parts(closed.model(), id) || turn_of(closed, id, q) <= turned) return nullptr;
+  return guide_on_ground(closed, id);
+}
+
 }  // namespace
 
 std::vector<MovedStart> moved_starts(const System& closed, std::span<const double> q, std::span<const double> v) {
@@ -75,13 +89,8 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
       add(body, "position", "m", poses.shift(b, q), least_shift(b), far_part * size, body.pose_location);
     if (body.angle) add(body, "angle", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
-    if (body.position && !body.angle && !body.rotation) {
-      const Pose pose = closed.coordinates().frame_pose(b, q);
-      const double* r = pose.rotation;
-      const double angle = std::acos(std::clamp(0.5 * (r[0] + r[4] + r[8] - 1.0), -1.0, 1.0));
-      const JointElement* guide = angle > turned && has_parts(model, b) ? guide_on_ground(closed, b) : nullptr;
-      if (guide != nullptr) out.push_back({body.name, "turn", "rad", angle, false, body.pose_location, guide->name});
-    }
+    if (const JointElement* guide = turned_by(closed, b, q))
+      out.push_back({body.name, "turn", "rad", turn_of(closed, b, q), false, body.pose_location, guide->name});
     if (!body.velocity_given && !body.angular_velocity_given) continue;
     double wanted[6], is[6];
     closed.coordinates().body_twist(b, q, given, wanted);
