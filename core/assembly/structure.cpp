@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <set>
 #include <string>
@@ -383,12 +382,7 @@ class Examination {
     const auto same = [](const StructureDoubt& doubt) { return doubt.id == std::string_view("dead-point"); };
     if (std::ranges::any_of(structure_.doubts, same)) return;
     const Body& body = model_.bodies[at(unstable.body)];
-    doubt("unstable-start",
-          fmt::format("'{}' starts at rest in an unstable equilibrium: what acts moves it neither way, and a deviation "
-                      "would grow tenfold in {:.2g} s; it stays there or rounding decides where it goes: start beside "
-                      "it, or give it a speed",
-                      body.name, std::numbers::ln10 / unstable.growth),
-          body.name, body.location);
+    doubt("unstable-start", fmt::format("'{}' {}", body.name, words_of(unstable)), body.name, body.location);
   }
 
   /// Bodies that hang on those of a joint without ground between them.

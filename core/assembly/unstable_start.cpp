@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include "assembly/continuation.h"
 #include "assembly/row_space.h"
@@ -18,6 +20,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double in_balance = 1e-10;                             // force along motions, of all that acts
+constexpr double near_balance = 1e-2;                            // the same, within an accuracy of it
 constexpr double at_rest = 1e-9;                                 // speed, of the model's size in a run
 constexpr double deviation = 1e-5;                               // rad, or of the size of the model
 constexpr double least_growth = 3.0;                             // powers of e in the run
@@ -37,7 +40,10 @@ class Balance {
   std::optional<UnstableStart> unstable() {
     if (root_mass_.size() == 0 || !(root_mass_.minCoeff() > 0.0)) return std::nullopt;
     const MatrixXd free = motions();
-    if (free.cols() == 0 || !balanced(free)) return std::nullopt;
+    if (free.cols() == 0) return std::nullopt;
+    const double off = off_balance(free);
+    if (!(off <= near_balance)) return std::nullopt;
+    const VectorXd push = free.transpose() * loads();
     MatrixXd stiffness(free.cols(), free.cols());
     for (Eigen::Index i = 0; i < free.cols(); ++i) {
       VectorXd ahead, back;
@@ -49,7 +55,13 @@ class Balance {
     const Eigen::Index last = free.cols() - 1;
     const double growth = std::sqrt(std::max(0.0, modes.values[last]));
     if (!(growth * (model_.settings.end - model_.settings.start) > least_growth)) return std::nullopt;
-    return UnstableStart{most_moved(free * modes.vectors.col(last)), growth};
+    const VectorXd way = free * modes.vectors.col(last);
+    const BodyId body = most_moved(way);
+    if (off <= in_balance) return UnstableStart{body, growth};
+    const double beside =
+        std::abs(modes.vectors.col(last).dot(push)) / (growth * growth * unit(way)) * mechanism_.system.size();
+    if (!(beside <= model_.settings.accuracy)) return std::nullopt;
+    return UnstableStart{body, growth, beside};
   }
 
  private:
@@ -66,20 +78,22 @@ class Balance {
     return VectorXd::Map(mechanism_.e.force.data(), root_mass_.size()).cwiseQuotient(root_mass_);
   }
 
-  /// Whether nothing that acts moves it, at any time that is looked at, though something acts.
-  bool balanced(const MatrixXd& free) {
+  /// What would move it at the times that are looked at, of all that acts; infinite where nothing does.
+  double off_balance(const MatrixXd& free) {
     bool loaded = false;
+    double off = 0.0;
     const double start = model_.settings.start, length = model_.settings.end - start;
     for (const double part : looked_at) {
       mechanism_.state.t() = start + part * length;
       evaluate();
       const VectorXd acting = loads();
-      if ((free.transpose() * acting).norm() > in_balance * acting.norm()) return false;
-      loaded = loaded || acting.norm() > 0.0;
+      if (!(acting.norm() > 0.0)) continue;
+      off = std::max(off, (free.transpose() * acting).norm() / acting.norm());
+      loaded = true;
     }
     mechanism_.state.t() = start;
     evaluate();
-    return loaded;
+    return loaded ? off : unbounded;
   }
 
   /// A deviation of so much along a motion is one of 1 rad or of the size of the model.
@@ -149,6 +163,22 @@ std::optional<UnstableStart> unstable_start(const System& system, const State& s
   } catch (const Error&) {
     return std::nullopt;  // what has no value at some time is reported when a run meets it
   }
+}
+
+std::string words_of(const UnstableStart& start) {
+  const std::string grows =
+      fmt::format("a deviation would grow tenfold in {:.2g} s", std::numbers::ln10 / start.growth);
+  const std::string why =
+      start.beside > 0.0
+          ? fmt::format(
+                "it is {:.2g} m beside it, less than the accuracy, and {}; errors of steps decide when and where "
+                "it goes: start farther beside it, ask for more accuracy, or give it a speed",
+                start.beside, grows)
+          : fmt::format(
+                "what acts moves it neither way, and {}; it stays there or rounding decides where it goes: start "
+                "beside it, or give it a speed",
+                grows);
+  return "starts at rest in an unstable equilibrium: " + why;
 }
 
 }  // namespace freeplay

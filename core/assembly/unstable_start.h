@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "system/state.h"
 #include "system/system.h"
@@ -11,10 +12,13 @@ namespace freeplay {
 struct UnstableStart {
   BodyId body = ground;  ///< that would move most
   double growth = 0.0;   ///< of a small deviation, e-fold [1/s]
+  double beside = 0.0;   ///< how far it is from the equilibrium [m]; 0: in it
 };
 
 /// Of the ideal mechanism, in the state in which a run of `system` begins. Only where loads leave it at rest for the
-/// whole run, and a deviation would grow within it.
+/// whole run, or would do so at a place within its accuracy, and a deviation would grow within it.
 std::optional<UnstableStart> unstable_start(const System& system, const State& start);
+/// "starts at rest in ...", why, and what to do.
+std::string words_of(const UnstableStart& start);
 
 }  // namespace freeplay

@@ -42,6 +42,8 @@ namespace {
 
 constexpr double sameness = 1e-6;  // of values a period apart, by the largest
 constexpr double roundings = 1e-9;
+constexpr double constant_below =
+    1e-6;  // of what operations show: what comes again after less is constant but for instants
 constexpr int most_multiples = 1000, instants = 256, between_corners = 8, corners_looked_at = 4096;
 
 }  // namespace
@@ -220,9 +222,9 @@ std::optional<Recurrence> recurrence(const Expression& expression, double from, 
   if (!found || found->period == 0.0 || !(found->period <= to - from)) return found;
   double period = found->period;
   for (const int part : {2, 3, 5}) {
-    while (repeats(expression, from, *found, period / part)) period /= part;
+    while (period > constant_below * found->period && repeats(expression, from, *found, period / part)) period /= part;
   }
-  found->period = period;
+  found->period = period > constant_below * found->period ? period : 0.0;
   return found;
 }
 

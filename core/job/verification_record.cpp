@@ -25,8 +25,10 @@ std::string agreement_text(const Verification& v) {
           fmt::format("{}{}: {} and {}", peaks.empty() ? "" : ", ", peak.name, number(peak.run), number(peak.second));
   }
   const std::string difference =
-      fmt::format("positions agree to {} until {:.6g} s and differ by up to {:.2g} m, at {:.6g} s", limit,
-                  v.agree_until, v.largest, v.at);
+      v.largest > v.limit
+          ? fmt::format("positions agree to {} until {:.6g} s and differ by up to {:.2g} m, at {:.6g} s", limit,
+                        v.agree_until, v.largest, v.at)
+          : fmt::format("positions agree to {} throughout", limit);
   switch (v.agreement) {
     case Agreement::agree:
       return fmt::format("positions agree to {} throughout", limit);

@@ -79,11 +79,12 @@ bool Corners::next_corner(double dt, double& corner) {
 
 bool Corners::resolve_inputs(double& dt) {
   if (!inputs_) return true;
-  dt = inputs_->resolved(run_.accepted.t(), dt);
+  const bool alone = run_.solver.rows().hold_everything();
+  dt = inputs_->resolved(run_.accepted.t(), dt, alone);
   if (!inputs_->watches_joints()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   Fault fault;
-  return inputs_->resolved_by_joints(point(run_.accepted), run_.e_accepted, run_.accepted.t(), dt, fault) ||
+  return inputs_->resolved_by_joints(point(run_.accepted), run_.e_accepted, run_.accepted.t(), dt, alone, fault) ||
          failure_.fail_with(fault, run_.accepted.t());
 }
 
@@ -91,7 +92,8 @@ bool Corners::resolves_joints(double& dt) {
   if (!inputs_ || !inputs_->watches_joints()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   Fault fault;
-  return inputs_->resolved_by_joints(point(run_.trial), run_.e_trial, run_.accepted.t(), dt, fault) ||
+  const bool alone = run_.solver.rows().hold_everything();
+  return inputs_->resolved_by_joints(point(run_.trial), run_.e_trial, run_.accepted.t(), dt, alone, fault) ||
          failure_.fail_with(fault, run_.trial.t());
 }
 

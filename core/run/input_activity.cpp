@@ -218,6 +218,8 @@ CornerKind InputActivity::kind_of(double corner, double margin) const {
 namespace {
 
 constexpr std::size_t signals(int bends) { return bends > 0 ? 2 : 1; }
+/// Of motions the acceleration is looked at, which shows more than the value.
+constexpr double part_of(int bends) { return bends > 0 ? StepResolution::strict : StepResolution::finest; }
 
 /// Fills the value of a formula or table and, if `bends`, that derivative.
 template <class Function>
@@ -243,10 +245,10 @@ auto InputActivity::light(Unit unit, int bends) const {
   };
 }
 
-double InputActivity::resolved(double t, double dt) {
+double InputActivity::resolved(double t, double dt, bool alone) {
   if (t >= seen_from_ && t + dt <= seen_to_) return dt;
-  for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt);
-  for (Table& table : tables_) dt = resolved_table(table, t, dt);
+  for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt, alone);
+  for (Table& table : tables_) dt = resolved_table(table, t, dt, alone);
   seen_from_ = t, seen_to_ = t + dt;
   return dt;
 }
@@ -304,8 +306,9 @@ void InputActivity::note_change(Input& input, double t, double dt, CornerKind sh
   if (dt <= quick(sharp)) input.quick_until = std::max(input.quick_until, t + quick(sharp));
 }
 
-// A motion is looked at for its acceleration as well where no integrator sees that.
-double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
+// A motion is looked at for its acceleration as well where no integrator sees that, and a load closely.
+double InputActivity::resolved_formula(Formula& formula, double t, double dt, bool alone) {
+  const bool closely = formula.bends > 0 || (alone && formula.sharp == CornerKind::load);
   const double rate = formula.course.rate_within(t, t + dt);
   if (formula.bends > 0) {
     if (std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
@@ -315,34 +318,35 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
     const double length = formula.course.length_of_change(t, seen_degree, quick(formula.sharp));
     if (length < unbounded) dt = std::min(dt, part_of_form * length);
     if (length < unbounded && std::isfinite(rate)) dt = std::min(dt, slow_load / rate);
+    if (closely && std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
   }
   if (rate * dt <= slow) return dt;
-  if (dt <= (formula.bends > 0 ? finest * formula.shortest : unwatched(formula.shortest, formula.most))) return dt;
+  if (dt <= (closely ? finest * formula.shortest : unwatched(formula.shortest, formula.most))) return dt;
   const double wanted = std::min(dt, formula.most), least = finest * formula.shortest;
-  const double length =
-      resolution_.resolved(t, wanted, least, formula.bends > 0 ? unbounded : 0.0, signals(formula.bends),
-                           look_at(*formula.expression, formula.bends), even(formula.shortest / samples_per_change),
-                           light(formula.unit, formula.bends));
+  const double length = resolution_.resolved(
+      t, wanted, least, closely ? unbounded : 0.0, signals(formula.bends), look_at(*formula.expression, formula.bends),
+      even(formula.shortest / samples_per_change), light(formula.unit, formula.bends), part_of(formula.bends));
   if (length < wanted || resolution_.saw_bend()) note_change(formula, t, wanted, formula.sharp);
   formula.most = length < dt ? longer * length : unbounded;
   return length;
 }
 
-double InputActivity::resolved_table(Table& table, double t, double dt) {
+double InputActivity::resolved_table(Table& table, double t, double dt, bool alone) {
   if (table.table->is_straight()) return dt;
   const double least = table.table->next_point(t) - t;
   if (dt <= least) return dt;
   const auto instants = [&](double from, double) { return TableInstants{table.table, from, from}; };
   const double wanted = std::min(dt, std::max(table.most, least));
-  const double length =
-      resolution_.resolved(t, wanted, least, 0.0, signals(table.bends), look_at(*table.table, table.bends), instants,
-                           light(table.unit, table.bends));
+  const double length = resolution_.resolved(
+      t, wanted, least, alone && table.sharp == CornerKind::load ? unbounded : 0.0, signals(table.bends),
+      look_at(*table.table, table.bends), instants, light(table.unit, table.bends), part_of(table.bends));
   if (length < wanted) note_change(table, t, wanted, table.sharp);
   table.most = length < dt ? longer * length : unbounded;
   return length;
 }
 
-bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault) {
+bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, bool alone,
+                                       Fault& fault) {
   for (TimedJoint& timed : joints_) {
     if (dt <= unwatched(timed.shortest, timed.varies ? 0.0 : timed.most)) continue;
     bool good = true;
@@ -353,8 +357,10 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
       return c >= wrenches ? 0.0 : negligible(c % 6 < 3 ? Unit::force : Unit::torque, step);
     };
     const double wanted = std::min(dt, timed.most), least = finest * timed.shortest;
-    const double length = resolution_.resolved(t, wanted, least, coarsest * timed.shortest, timed.signals, look,
-                                               even(timed.shortest / samples_per_change), light);
+    const double strict_below = alone ? unbounded : coarsest * timed.shortest;
+    const double length = resolution_.resolved(t, wanted, least, strict_below, timed.signals, look,
+                                               even(timed.shortest / samples_per_change), light,
+                                               alone ? StepResolution::finest : StepResolution::strict);
     if (!good) return false;
     if (length < wanted) note_change(timed, t, wanted, CornerKind::load);
     timed.varies = timed.varies || length < wanted || resolution_.saw_change();

@@ -39,11 +39,12 @@ class InputActivity {
   CornerKind kind_of(double corner, double margin) const;
 
   /// The length, dt or less, of a step from t that no corner lies in and that resolves all formulas and tables: their
-  /// values at the samples are, to a hundredth of their range, what a polynomial through five of them makes of them.
-  double resolved(double t, double dt);
+  /// values at the samples are, to a hundredth of their range, what a polynomial through five of them makes of them; to
+  /// a fifty-thousandth where loads move nothing (`alone`), as then no error of a step shows what they do to forces.
+  double resolved(double t, double dt, bool alone = false);
   /// The same for joints that may depend on time, as `here` has their markers, internal variables and history: the
   /// start of the step, or its end once it is made.
-  bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
+  bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, bool alone, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
   /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or declared by
@@ -147,8 +148,8 @@ class InputActivity {
   double quick(CornerKind sharp) const;
   template <class Input>
   void note_change(Input& input, double t, double dt, CornerKind sharp) const;
-  double resolved_formula(Formula& formula, double t, double dt);
-  double resolved_table(Table& table, double t, double dt);
+  double resolved_formula(Formula& formula, double t, double dt, bool alone);
+  double resolved_table(Table& table, double t, double dt, bool alone);
   bool signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault);
   /// Of the forces of a joint, between the ends of steps.
   std::optional<UnseenChange::Found> unseen_force(const TimedJoint& timed, double step, const Point& here,

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double no_departure = std::numeric_limits<double>::infinity();
 constexpr double shown_part = 0.01;        // of a formula's range in the step
+constexpr double shown_alone = 1e-5;       // of it where loads move nothing: means and peaks of forces are by parabolas
 constexpr double hidden_part = 0.1;        // of its range in the run: more is not shown by steps of one size
 constexpr double finest_span = 1e-9;       // of the step: shorter spans are not halved
 constexpr double same_begin = 1.0 / 64.0;  // to which it is known where something begins
@@ -99,7 +100,8 @@ bool MotionLoads::show(Course& course) {
   const double dt = course.part * course.load.motion.length();
   const double light = course.load.load->turns ? light_.torque(dt) : light_.force(dt);
   const double largest = std::max(std::abs(course.low), std::abs(course.high));
-  course.allowed = std::max({shown_part * (course.high - course.low), no_change * largest, light});
+  const double part = run_.adaptive && run_.solver.rows().hold_everything() ? shown_alone : shown_part;
+  course.allowed = std::max({part * (course.high - course.low), no_change * largest, light});
   return true;
 }
 

@@ -16,6 +16,7 @@ class StepResolution {
  public:
   static constexpr double tolerance = 0.01;  ///< of a signal's range in the step
   static constexpr double strict = 1e-3;     ///< the same, where no more than a corner can be inside
+  static constexpr double finest = 2e-5;     ///< where means and peaks follow the signal alone, by parabolas
   static constexpr double rounding = 1e-12;  ///< of the largest signal: no change
 
   explicit StepResolution(std::size_t most_signals)
@@ -24,14 +25,14 @@ class StepResolution {
   /// The length, dt or less, of a step from t that resolves `count` signals; one of `least` always does.
   /// `look(t, double*)` fills the signals; where it returns false the search ends, as the step will meet that.
   /// `instants(t, dt)` makes what gives one time after the other at which to look; the last is t + dt or later.
-  /// Steps shorter than `strict_below` are judged strictly: a change that they are a small part of is smooth in them,
-  /// unless it begins there.
+  /// Steps shorter than `strict_below` are judged strictly, or by another `part`: a change that they are a small part
+  /// of is smooth in them, unless it begins there.
   /// `negligible(c, dt)` is a range of signal c that does not matter in such a step.
   template <class Look, class Instants, class Negligible>
   double resolved(double t, double dt, double least, double strict_below, std::size_t count, Look&& look,
-                  Instants&& instants, Negligible&& negligible) {
+                  Instants&& instants, Negligible&& negligible, double part = strict) {
     while (dt > least) {
-      const double change = sampled(t, dt, dt <= strict_below ? strict : tolerance, count, look, instants, negligible);
+      const double change = sampled(t, dt, dt <= strict_below ? part : tolerance, count, look, instants, negligible);
       if (change < 0.0) return dt;
       // What begins late in the step is left to the next one.
       dt = std::max(change > 0.125 * dt ? change : 0.5 * dt, least);

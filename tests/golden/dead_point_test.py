@@ -285,6 +285,21 @@ class DeadPoint(ProgramTest):
                     out, _ = self.freeplay("run", file, "--out", "r", "--force")
                     self.assertIn(f"trust: doubtful ('{body}' starts at rest", out)
 
+    def test_a_start_beside_an_unstable_equilibrium_is_named_where_its_accuracy_does_not_tell_them_apart(self):
+        beside = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {rod: {mass: 1, inertia: 0.01, com: [0.3, 0]}}
+joints: {A: {type: revolute, between: [ground, rod]}}
+initial: {joints: {A: %s deg}}
+simulation: {end: 8 s, accuracy: %s}
+"""
+        for angle, accuracy, named in (("90.0000001", "1 um", True), ("90.01", "100 um", True), ("90.0000001", "0.1 nm", False),
+                                       ("90.01", "10 um", False), ("89", "100 um", False), ("-90.0000001", "1 um", False)):
+            with self.subTest(angle + " " + accuracy):
+                _, err = self.freeplay("validate", self.write("m.yaml", beside % (angle, accuracy)))
+                (self.assertRegex if named else self.assertNotRegex)(
+                    err, r"'rod' starts at rest in an unstable equilibrium: it is \S+ m beside it, less than the accuracy")
+
     def test_a_start_with_links_just_long_enough_is_named(self):
         model = FOUR_BAR % (0.1, "", "%s", "", "accuracy: 1 um")
         model = model.replace("[0.4, 0]", "[0.5, 0]").replace("-10 deg", "0").replace("120 deg", "180 deg").replace("initial: {joints: {}}\n", "")

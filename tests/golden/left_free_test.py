@@ -79,6 +79,19 @@ class LeftFree(ProgramTest):
             with self.subTest(old):
                 self.assertEqual(1, len(self.doubts(SUSPENSION, **{old: new})))
 
+    def test_hammers_that_a_rotor_carries_are_meant_where_their_joint_has_a_start(self):
+        mill = """freeplay: 1
+bodies: {rotor: {mass: 50, inertia: 2, frames: {h: [0.25, 0]}}, hammer: {mass: 3, inertia: 0.02, com: [0.08, 0]}}
+joints: {axle: {type: revolute, between: [ground, rotor]}, h: {type: revolute, between: [rotor/h, hammer]}}
+drivers: {m: {joint: axle, kind: velocity, value: 1000 rpm}}
+initial: {joints: {h: 20 deg}}
+simulation: {end: 0.1, accuracy: 10 um}
+"""
+        self.assertEqual([], self.doubts(mill))
+        found = self.doubts(mill.replace("initial: {joints: {h: 20 deg}}\n", ""))
+        self.assertEqual(1, len(found))
+        self.assertIn("nothing acts on 'hammer'", found[0])
+
 
 if __name__ == "__main__":
     unittest.main()

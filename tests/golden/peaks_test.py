@@ -36,6 +36,23 @@ joints:
 drivers: {m: {joint: O, kind: velocity, value: 10}}
 simulation: {end: 1}
 """
+# A wheel that turns at 10 rad/s whatever the load; the torque of its driver is that of the load. The rms by the integral of
+# its square.
+LOADED_WHEEL = """freeplay: 1
+bodies: {w: {mass: 1, inertia: 0.01}}
+joints: {g: {type: revolute, between: [ground, w]}}
+drivers: {m: {joint: g, kind: velocity, value: 10}}
+forces: {f: {type: torque, on: w, value: "%s"}}
+simulation: {end: 1 s, accuracy: %s, integrator: %s, output: {interval: 1 ms}}
+"""
+GAUSS = 7.0 * math.sqrt(1e-3 * math.sqrt(math.pi / 2.0))
+RIPPLE = [3.0 * math.sin(400.0 * i / 200000) + 4.0 * math.cos(200.0 * i / 200000)**3 for i in range(200001)]
+LOADS = (("7*exp(-((t - 0.5455405549459713)/0.001)^2)", 7.0, GAUSS), ("7*exp(-((t - 0.51234)/0.001)^2)", 7.0, GAUSS),
+         ("7*exp(-((joint.g.angle - 5.1234 rad)/(0.01 rad))^2)", 7.0, GAUSS),
+         ("7*(1 - tanh((t - 0.4321)/0.002)^2)", 7.0, 7.0 * math.sqrt(0.002 * 4.0 / 3.0)),
+         ("7/(1 + ((t - 0.61)/0.004)^2)", 7.0, 7.0 * math.sqrt(0.004 * math.pi / 2.0)),
+         ("7*sin(50*t)", 7.0, 7.0 * math.sqrt(0.5 - math.sin(100.0) / 200.0)),
+         ("3*sin(400*t) + 4*cos(200*t)^3", max(map(abs, RIPPLE)), math.sqrt(sum(value * value for value in RIPPLE) / len(RIPPLE))))
 ENDS = {"slider-crank": 2e-3, "3-rrr": 0.01, "4-rrr": 0.01, "slider-crank-clearance": 4e-3, "cradle-3": 0.02, "cradle-5": 0.02,
         "bathe-noh": 2.0, "bathe-noh-trapezoidal": 2.0}
 
@@ -136,6 +153,16 @@ class PeaksTest(ProgramTest):
                         self.assert_no_row_exceeds(rows, fine)
                     for (kind, element, key), value in peaks_of_rows(rows, fine).items():
                         self.assertLessEqual(value, coarse[kind][element][key] * 1.003 + 1e-12, (kind, element, key))
+
+    def test_smooth_loads_on_what_only_drivers_move_have_their_peaks_and_means(self):
+        for load, largest, rms in LOADS:
+            for accuracy, integrator in (("100 um", "verner7"), ("1 um", "dopri5"), ("1 um", "bathe"), ("10 nm", "verner7")):
+                with self.subTest(load=load, accuracy=accuracy, integrator=integrator):
+                    self.write("m.yaml", LOADED_WHEEL % (load, accuracy, integrator))
+                    _, summary, _, _ = self.run_model("m.yaml")
+                    motor = summary["drivers"]["m"]
+                    self.assertAlmostEqual(1.0, motor["max_abs"] / largest, delta=2e-3)
+                    self.assertAlmostEqual(1.0, motor["rms"] / rms, delta=5e-3)
 
     def test_the_window_is_printed_with_what_it_leaves_out(self):
         self.write("m.yaml", PENDULUM.replace("interval: 2 s", "interval: 10 ms, discard: 0.6 s"))

@@ -39,6 +39,11 @@ TEST(MotionPeriod, OfShortPulsesIsThatOfWhatTheyAreMadeOf) {
               1e-6);
 }
 
+TEST(MotionPeriod, OfWhatIsConstantButForInstantsIsThatOfAConstant) {
+  EXPECT_FALSE(period_of("kind: torque, value: 'abs(sign(sin(1e5*t)))'"));
+  EXPECT_NEAR(period_of("kind: velocity, value: '10*abs(sign(sin(50*t)))'").value(), 0.2 * M_PI, 1e-9);
+}
+
 TEST(MotionPeriod, OfARampThatIsOverIsThatOfTheRest) {
   EXPECT_NEAR(period_of("kind: velocity, value: 'smooth(t, 0, 0.1)*sin(2*pi*t)'").value(), 1.0, 1e-9);
   EXPECT_NEAR(period_of("kind: angle, value: '3*max(t, 0.1) + sin(2*pi*t)'").value(), 1.0, 1e-9);
