@@ -39,7 +39,7 @@ class FreeMotions {
   void judge(const MatrixXd& held, LeftFree& found) const {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(found.bodies, body) > 0; };
     const bool acts = acts_on(is_moving);
-    const std::vector<int> unrestrained = acts ? without_start(is_moving, held) : without_joint_start(held);
+    const std::vector<int> unrestrained = acts ? without_start(is_moving, held) : found.bodies;
     if (unrestrained.empty()) return;
     std::string names;
     for (const int b : unrestrained)
@@ -48,10 +48,11 @@ class FreeMotions {
       names = fmt::format("'{}' and {} others", model_.bodies[at(unrestrained[0])].name, unrestrained.size() - 1);
     found.doubtful = unrestrained.front();
     found.doubt = fmt::format(
-        "{} left over with all drivers at rest, and {} {}: add the missing guide, joint or driver; what is "
-        "meant to move freely gets a start under 'initial', or a 'pose' with its angle",
+        "{} left over with all drivers at rest, and {} {}: add the missing {}guide, joint or driver; what is "
+        "meant to move freely gets a start {}",
         found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
-        acts ? "no start is given for" : "nothing acts on", names);
+        acts ? "no start is given for" : "nothing acts on", names, acts ? "" : "gravity, force, ",
+        acts ? "under 'initial', or a 'pose' with its angle" : "speed under 'initial', if only 0");
   }
 
   /// A wheel on its own bearing on ground that nothing turns, as one whose gear was forgotten.
@@ -319,20 +320,6 @@ class FreeMotions {
       if (std::ranges::count(moving, b) > 0 || turns_unnoticed(b) > counts_as_motion) unrestrained.push_back(b);
     }
     return unrestrained;
-  }
-
-  /// The same where nothing acts but the inertia of bodies that a driver moves about: a start of a joint alone says
-  /// that its freedom is meant, as of the hammers of a mill.
-  std::vector<int> without_joint_start(const MatrixXd& held) const {
-    const std::vector<char> led = led_by_joints();
-    MatrixXd given = held;
-    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      const JointElement& joint = model_.joints[at(j)];
-      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
-      const bool carried = (a != ground && led[at(a)]) || (b != ground && led[at(b)]);
-      if (joint.gear < 0 && joint.start_coordinate && carried) given = stacked(given, coordinate_rate(j));
-    }
-    return moving_in(given, idle_spins(given));
   }
 
   /// Bodies that are joined to one of a pair, of which one moves, that no joint holds together though a frame which
