@@ -18,13 +18,12 @@ constexpr double beside_end = 0.9;    // of a step
 constexpr double same_place = 0.02;   // of a step
 constexpr double nearest_end = 0.05;  // of a step
 
-struct Node {
-  double x, y;
-};
 /// The parabola y1 + (x - x1) (slope + bend (x - x0)).
 struct Parabola {
-  Parabola(const Node& a, const Node& b, const Node& c) : x0(a.x), x1(b.x), y1(b.y), slope((b.y - a.y) / (b.x - a.x)) {
-    bend = ((c.y - b.y) / (c.x - b.x) - slope) / (c.x - a.x);
+  using Node = std::pair<double, double>;
+  Parabola(const Node& a, const Node& b, const Node& c)
+      : x0(a.first), x1(b.first), y1(b.second), slope((y1 - a.second) / (x1 - x0)) {
+    bend = ((c.second - y1) / (c.first - x1) - slope) / (c.first - x0);
   }
   double vertex() const { return 0.5 * (x0 + x1 - slope / bend); }
   double at(double x) const { return y1 + (x - x1) * (slope + bend * (x - x0)); }
@@ -52,8 +51,16 @@ void PeakSearch::end_step(double t, std::span<const double> values) {
   std::ranges::copy(values, end_.values.begin());
   ends_ = std::min(ends_ + 1, 3);
   looks_ = extras_ = 0;
+  order_ = {0, 1};
   credit_ = std::min(credit_ + credit_per_step, first_credit);
   fair_credit_ = std::min(fair_credit_ + credit_per_step, first_credit);
+}
+
+std::pair<double, double> PeakSearch::node(int place, std::size_t value) const {
+  const int known = order_[at(place)];
+  if (known < 2) return {static_cast<double>(known), (known == 0 ? start_ : end_).values[value]};
+  const Point& look = inner_[at(known - 2)];
+  return {look.x, look.values[value]};
 }
 
 // What the parabola says at its top, and half as much as it bulges over a step more, since it may bulge otherwise.
@@ -76,20 +83,23 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
 
 // The parabola through the highest place that is known and those beside it.
 PeakSearch::Candidate PeakSearch::by_looks(std::size_t value, double largest) const {
-  Node nodes[most_looks + most_extras + 2] = {{0.0, start_.values[value]}, {1.0, end_.values[value]}};
-  int count = 2;
-  for (int i = 0; i < looks_ + extras_; ++i) nodes[count++] = {inner_[at(i)].x, inner_[at(i)].values[value]};
-  std::sort(nodes, nodes + count, [](const Node& a, const Node& b) { return a.x < b.x; });
-  const Node* highest = std::max_element(nodes, nodes + count, [](const Node& a, const Node& b) { return a.y < b.y; });
-  const Node* middle = std::clamp<const Node*>(highest, nodes + 1, nodes + count - 2);
-  const Parabola curve(middle[-1], middle[0], middle[1]);
+  const int last = looks_ + extras_ + 1;
+  int highest = 0;
+  double height = start_.values[value];
+  for (int i = 1; i <= last; ++i) {
+    const double y = node(i, value).second;
+    if (y > height) highest = i, height = y;
+  }
+  const int middle = std::clamp(highest, 1, last - 1);
+  const Parabola curve(node(middle - 1, value), node(middle, value), node(middle + 1, value));
   if (!(curve.bend < 0.0)) return {};
   const double top = curve.vertex();
   if (!(top > 0.0 && top < 1.0)) return {};
-  for (const Node* node = nodes + 1; node < nodes + count - 1; ++node) {
-    if (std::abs(top - node->x) < same_place) return {};
-  }
   const double gain = part_of(curve.at(top) - largest, largest);
+  if (!(gain > least_gain)) return {};
+  for (int i = 1; i < last; ++i) {
+    if (std::abs(top - node(i, value).first) < same_place) return {};
+  }
   return {top, gain, gain};
 }
 
@@ -136,6 +146,10 @@ void PeakSearch::seen(double s, std::span<const double> values) {
   Point& point = inner_[at(looks_ + extras_ - 1)];
   point.x = s;
   std::ranges::copy(values, point.values.begin());
+  int place = looks_ + extras_;  // that of the end of the step until now
+  order_[at(place + 1)] = 1;
+  for (; place > 1 && inner_[at(order_[at(place - 1)] - 2)].x > s; --place) order_[at(place)] = order_[at(place - 1)];
+  order_[at(place)] = looks_ + extras_ + 1;
 }
 
 }  // namespace freeplay

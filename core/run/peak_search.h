@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace freeplay {
@@ -46,6 +47,7 @@ class PeakSearch {
     double s = 0.0, gain = 0.0;  ///< gain: at most, as a part of the largest value
     double likely = 0.0;         ///< the same by the parabola alone
   };
+  std::pair<double, double> node(int place, std::size_t value) const;  // its fraction of the step, its value
   Candidate by_ends(std::size_t value, double largest) const;
   Candidate by_looks(std::size_t value, double largest) const;
   Candidate by_steepness(std::size_t value, double largest) const;
@@ -53,8 +55,10 @@ class PeakSearch {
 
   Point before_, start_, end_;
   std::array<Point, most_looks + most_extras> inner_;  ///< looks at the present step
-  int ends_ = 0;                                       ///< known in a row, at most 3
-  int looks_ = 0, extras_ = 0;                         ///< at the present step
+  /// Places in it that are known, in their order: 0: its start, 1: its end, 2 and on: looks.
+  std::array<int, most_looks + most_extras + 2> order_{};
+  int ends_ = 0;                ///< known in a row, at most 3
+  int looks_ = 0, extras_ = 0;  ///< at the present step
   double credit_, fair_credit_;
 };
 
