@@ -384,6 +384,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     inputs = read_inputs(options.inputs, *loaded.model, loaded.diagnostics, loaded.model->inputs.emplace_back());
   }
   if (loaded.diagnostics.has_errors()) return report_failure(loaded.diagnostics, 3, common);
+  settle_format(*loaded.model, options, common);
   if (resumed != nullptr) require_same_making(resumed->checkpoint, provenance(*loaded.model, {}));
   const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
   if (!options.dry_run) announce_size(*loaded.model, path, from != nullptr ? from->rows() : 0, options, common);

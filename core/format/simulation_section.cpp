@@ -51,7 +51,7 @@ class SimulationSection {
     if (options.step) settings_.accuracy = 0.0;
     if (options.accuracy) settings_.accuracy = *options.accuracy;
     if (options.accuracy || options.step) settings_.accuracy_location = {};
-    if (options.format) settings_.format = *options.format;
+    if (options.format) take_format(*options.format);
     if (!section_given) {
       settings_.end = options.end.value_or(settings_.end);
       settings_.interval = (settings_.end - settings_.start) / 1000.0;
@@ -249,7 +249,12 @@ class SimulationSection {
 
   void read_format(const CheckedValue& value) {
     if (const auto word = value.word({std::begin(result_formats), std::end(result_formats)}))
-      settings_.format = static_cast<ResultFormat>(*word);
+      take_format(static_cast<ResultFormat>(*word));
+  }
+
+  void take_format(ResultFormat format) {
+    settings_.format = format;
+    settings_.format_given = true;
   }
 
   void read_stop(const CheckedValue& value) {

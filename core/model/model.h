@@ -201,6 +201,7 @@ struct Settings {
   std::vector<int> frames;                 ///< markers to report
   std::vector<OutputColumn> columns;
   ResultFormat format = ResultFormat::both;
+  bool format_given = false;  ///< by the file or an option
   std::vector<StopCondition> stop;
   double assembly_tolerance = 1e-10;  ///< [m, rad]
   int assembly_iterations = 50;

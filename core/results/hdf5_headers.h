@@ -5,7 +5,7 @@
 
 namespace freeplay {
 
-/// Headers of datasets and lists of their chunks stay in memory, a few kilobytes for each column: HDF5 1.10 fails where
+/// Headers of datasets and lists of their chunks stay in memory: HDF5 1.10 fails where
 /// it takes them out of its cache in a file that others read meanwhile, which some 130 loose links came to.
 inline void keep_headers(hid_t access) {
   H5AC_cache_config_t cache{};

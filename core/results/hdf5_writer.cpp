@@ -25,6 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr hsize_t least_chunk = 64, largest_chunk = 1024;
 constexpr std::size_t enough_to_flush = 1 << 18;  // bytes of rows
+// Columns written between flushes: the library's own time for one grows with the square of what waits for it.
+constexpr std::size_t most_unflushed = 512;
 
 void sync_folder(const fs::path& folder) {
   const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -62,8 +64,9 @@ struct Hdf5Writer::File {
   HeldRows held;
 
  private:
-  void open_datasets();
-  static hid_t open_dataset(hid_t group, const std::string& name, hsize_t per_chunk);
+  void make(hid_t access);
+  hid_t open_dataset(const std::string& name) const { return checked(H5Dopen2(file, name.c_str(), H5P_DEFAULT)); }
+  hid_t column(std::size_t c);
   void write_columns();
   void write_events();
   static void extend(hid_t dataset, hsize_t size) { checked(H5Dset_extent(dataset, &size)); }
@@ -84,21 +87,35 @@ Hdf5Writer::File::File(const fs::path& p, const RecordLayout& l, const Options& 
       layout(l),
       grows(options.grows),
       chunk(std::clamp<hsize_t>(std::bit_ceil(options.expected_rows), least_chunk, largest_chunk)) {
-  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
+  checked(H5Pset_file_locking(access, false, true));
+  checked(H5Pset_cache(access, 0, 1, chunk * sizeof(double), 1.0));  // one chunk of each dataset
+  make(access);
+  if (grows && !options.named_later) put_in_place();
+  columns.push_back(open_dataset(layout.columns.front().name));
+  for (const RecordColumn& one : layout.events) event_columns.push_back(open_dataset("events/" + one.name));
+  event = open_dataset("events/event");
+  waiting.resize(layout.columns.size() * chunk);
+}
+
+/// A file that others read while it is written is closed in between: what making it took is given back, and headers
+/// come back in the order of the columns, with those of their chunks beside them, which makes H5Fclose() quick.
+void Hdf5Writer::File::make(hid_t access) {
+  const Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   checked(H5Pset_link_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   checked(H5Pset_attr_creation_order(creation, H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED));
   checked(grows ? H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110)
                 : H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18));
-  checked(H5Pset_fclose_degree(access, H5F_CLOSE_STRONG));
-  checked(H5Pset_file_locking(access, false, true));
-  if (grows) keep_headers(access);
   file = checked(H5Fcreate(part.c_str(), H5F_ACC_TRUNC, creation, access));
   Hdf5Layout{file, layout, grows, chunk}.make();
-  if (grows) checked(H5Fstart_swmr_write(file));
-  checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
-  if (grows && !options.named_later) put_in_place();
-  open_datasets();
-  waiting.resize(layout.columns.size() * chunk);
+  if (!grows) {
+    checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
+    return;
+  }
+  checked(H5Fclose(std::exchange(file, -1)));
+  keep_headers(access);
+  file = checked(H5Fopen(part.c_str(), H5F_ACC_RDWR | H5F_ACC_SWMR_WRITE, access));
 }
 
 void Hdf5Writer::File::look() {
@@ -122,20 +139,10 @@ void Hdf5Writer::File::put_in_place() {
   sync_folder(path.parent_path());
 }
 
-hid_t Hdf5Writer::File::open_dataset(hid_t group, const std::string& name, hsize_t per_chunk) {
-  const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-  checked(H5Pset_chunk_cache(access, 1, per_chunk * sizeof(double), 1.0));
-  return checked(H5Dopen2(group, name.c_str(), access));
-}
-
-void Hdf5Writer::File::open_datasets() {
-  for (const RecordColumn& column : layout.columns) {
-    columns.push_back(open_dataset(file, dataset_name(column.name), chunk));
-  }
-  for (const RecordColumn& column : layout.events) {
-    event_columns.push_back(open_dataset(file, "events/" + column.name, event_chunk));
-  }
-  event = open_dataset(file, "events/event", event_chunk);
+/// Opened when it is first written.
+hid_t Hdf5Writer::File::column(std::size_t c) {
+  while (columns.size() <= c) columns.push_back(open_dataset(dataset_name(layout.columns[columns.size()].name)));
+  return columns[c];
 }
 
 void Hdf5Writer::File::put(hid_t dataset, hid_t type, hsize_t first, hsize_t count, const void* numbers) {
@@ -160,9 +167,10 @@ void Hdf5Writer::File::write(const RecordBlock& block) {
 /// All but the time of what waits.
 void Hdf5Writer::File::write_columns() {
   const hsize_t count = in_chunk - done_in_chunk, first = rows - count;
-  for (std::size_t c = 1; c < columns.size() && count > 0; ++c) {
-    extend(columns[c], rows);
-    put(columns[c], H5T_NATIVE_DOUBLE, first, count, waiting.data() + c * chunk + done_in_chunk);
+  for (std::size_t c = 1; c < layout.columns.size() && count > 0; ++c) {
+    extend(column(c), rows);
+    put(column(c), H5T_NATIVE_DOUBLE, first, count, waiting.data() + c * chunk + done_in_chunk);
+    if (grows && c % most_unflushed == 0) checked(H5Fflush(file, H5F_SCOPE_GLOBAL));
     look();
   }
   done_in_chunk = in_chunk;
@@ -225,17 +233,17 @@ void Hdf5Writer::File::finish(const BearingTables& tables, const std::string& su
     std::vector<std::int32_t> joints(count);
     for (std::size_t i = 0; i < joints.size(); ++i) joints[i] = static_cast<std::int32_t>(i);
     for (const auto& [name, numbers] : tables) {
-      const hid_t table = open_dataset(file, "bearing/" + name, bearing_chunk * bearing_sectors);
+      const hid_t table = open_dataset("bearing/" + name);
       const hsize_t size[] = {count, bearing_sectors};
       checked(H5Dset_extent(table, size));
       checked(H5Dwrite(table, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()));
     }
-    const hid_t joint = open_dataset(file, "bearing/joint", bearing_chunk);
+    const hid_t joint = open_dataset("bearing/joint");
     extend(joint, count);
     put(joint, H5T_NATIVE_INT32, 0, count, joints.data());
   }
   if (!summary.empty()) {
-    const hid_t text = open_dataset(file, "summary", summary_chunk), length = open_dataset(file, "summary_length", 1);
+    const hid_t text = open_dataset("summary"), length = open_dataset("summary_length");
     extend(text, summary.size());
     put(text, string_type(1, H5T_CSET_ASCII), 0, summary.size(), summary.data());
     extend(length, summary.size());

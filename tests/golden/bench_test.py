@@ -40,7 +40,7 @@ class Bench(ProgramTest):
         for integrator in ("bathe", "newmark", "hht", "generalized-alpha"):
             coarse, fine = [run["error"] for run in runs if run["integrator"] == integrator and run["kind"] == "step"]
             self.assertAlmostEqual(4.0, coarse / fine, delta=0.6)  # second order
-        self.assertLess(0.0, found["startup"]["3-rrr"]["median"])
+        self.assertLess(0.0, found["startup"]["3-rrr, rows as CSV"]["median"])
 
     def test_the_engine_of_studies_is_measured(self):
         out, _ = self.bench("--quick", "studies")

@@ -185,6 +185,17 @@ class Results(ProgramTest):
             self.assertEqual(self.read("r", "summary.json").encode(), file["summary"][:].tobytes())
             self.assertEqual(self.read("r", "model.yaml"), file.attrs["model"].decode())
 
+    def test_of_tens_of_thousands_of_columns_text_alone_is_written_unless_hdf5_is_asked_for(self):
+        chain = mechanism("validation/a02-chain")
+        _, err = self.freeplay("run", chain, "--set", "windows=800", "--end", "1 ms", "--out", "many")
+        self.assertRegex(err, "note: [0-9]+ columns go to results.csv alone: .*choose some --channels, or ask for it by --format both")
+        self.assertFalse(os.path.exists(self.path("many", "results.h5")))
+        self.freeplay("run", "--resume", "many", "--end", "2 ms")
+        self.assertFalse(os.path.exists(self.path("many", "results.h5")))
+        _, err = self.freeplay("run", chain, "--set", "windows=800", "--end", "1 ms", "--channels", "body.*", "--out", "some")
+        self.assertNotIn("results.csv alone", err)
+        self.assertTrue(os.path.exists(self.path("some", "results.h5")))
+
     def test_a_result_may_have_thousands_of_columns(self):
         # Their headers are more than HDF5 keeps in memory by itself.
         self.freeplay("run", mechanism("benchmark/chain"), "--quiet", "--set", "links=200", "--end", "20 us", "--step", "10 us",
