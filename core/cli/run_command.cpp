@@ -402,6 +402,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     twin = std::make_unique<TwinRun>([&](int pipe) { return run_twin(options, common, path, pipe); });
   }
   require_thread();
+  watch_interrupts();  // a result directory that is begun gets its summary
   const int exit_code =
       RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from, inputs).execute();
   if (options.report && exit_code != 6) write_report_of(path, common);

@@ -96,6 +96,18 @@ class Resume(ProgramTest):
                 self.assert_same(name, "whole")
                 self.assertIn("resumed from t = ", self.read(name, "run.log"))
 
+    def test_an_interrupt_while_the_directory_is_made_leaves_a_summary(self):
+        for run in range(24):
+            out = "early%d" % run
+            process = subprocess.Popen([PROGRAM, "run", mechanism("4-rrr"), "--end", "100 s", "--out", out],
+                                       cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            while not os.path.exists(self.path(out)):
+                self.assertIsNone(process.poll())
+            time.sleep(0.25e-3 * run)
+            process.send_signal(signal.SIGTERM)
+            self.assertEqual(130, process.wait(timeout=60))
+            self.assertEqual("interrupted", json.loads(self.read(out, "summary.json"))["status"])
+
     def test_a_run_with_inputs_goes_on_with_those_that_it_began_with(self):
         self.model = self.write("held.yaml", HELD)
         self.write("course.csv", "time,motor\n0,1\n0.0137,2\n3,-1\n7.77,0.5\n90,0\n")
