@@ -18,12 +18,13 @@ constexpr double beside_end = 0.9;    // of a step
 constexpr double same_place = 0.02;   // of a step
 constexpr double nearest_end = 0.05;  // of a step
 
+struct Node {
+  double x, y;
+};
 /// The parabola y1 + (x - x1) (slope + bend (x - x0)).
 struct Parabola {
-  using Node = std::pair<double, double>;
-  Parabola(const Node& a, const Node& b, const Node& c)
-      : x0(a.first), x1(b.first), y1(b.second), slope((y1 - a.second) / (x1 - x0)) {
-    bend = ((c.second - y1) / (c.first - x1) - slope) / (c.first - x0);
+  Parabola(const Node& a, const Node& b, const Node& c) : x0(a.x), x1(b.x), y1(b.y), slope((b.y - a.y) / (b.x - a.x)) {
+    bend = ((c.y - b.y) / (c.x - b.x) - slope) / (c.x - a.x);
   }
   double vertex() const { return 0.5 * (x0 + x1 - slope / bend); }
   double at(double x) const { return y1 + (x - x1) * (slope + bend * (x - x0)); }
@@ -51,16 +52,24 @@ void PeakSearch::end_step(double t, std::span<const double> values) {
   std::ranges::copy(values, end_.values.begin());
   ends_ = std::min(ends_ + 1, 3);
   looks_ = extras_ = 0;
-  order_ = {0, 1};
   credit_ = std::min(credit_ + credit_per_step, first_credit);
   fair_credit_ = std::min(fair_credit_ + credit_per_step, first_credit);
 }
 
-std::pair<double, double> PeakSearch::node(int place, std::size_t value) const {
-  const int known = order_[at(place)];
-  if (known < 2) return {static_cast<double>(known), (known == 0 ? start_ : end_).values[value]};
-  const Point& look = inner_[at(known - 2)];
-  return {look.x, look.values[value]};
+PeakSearch::Places PeakSearch::places() const {
+  Places known{1, {0.0}, {start_.values.data()}};
+  for (const Point& look : std::span(inner_).first(at(looks_ + extras_))) {
+    std::size_t place = at(known.count++);
+    for (; look.x < known.x[place - 1]; --place) {
+      known.x[place] = known.x[place - 1];
+      known.values[place] = known.values[place - 1];
+    }
+    known.x[place] = look.x;
+    known.values[place] = look.values.data();
+  }
+  known.x[at(known.count)] = 1.0;
+  known.values[at(known.count++)] = end_.values.data();
+  return known;
 }
 
 // What the parabola says at its top, and half as much as it bulges over a step more, since it may bulge otherwise.
@@ -82,24 +91,22 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
 }
 
 // The parabola through the highest place that is known and those beside it.
-PeakSearch::Candidate PeakSearch::by_looks(std::size_t value, double largest) const {
-  const int last = looks_ + extras_ + 1;
-  int highest = 0;
-  double height = start_.values[value];
-  for (int i = 1; i <= last; ++i) {
-    const double y = node(i, value).second;
-    if (y > height) highest = i, height = y;
+PeakSearch::Candidate PeakSearch::by_looks(const Places& places, std::size_t value, double largest) {
+  std::size_t highest = 0;
+  const std::size_t last = at(places.count) - 1;
+  for (std::size_t i = 1; i <= last; ++i) {
+    if (places.values[i][value] > places.values[highest][value]) highest = i;
   }
-  const int middle = std::clamp(highest, 1, last - 1);
-  const Parabola curve(node(middle - 1, value), node(middle, value), node(middle + 1, value));
+  const std::size_t middle = std::clamp(highest, std::size_t{1}, last - 1);
+  const auto node = [&](std::size_t i) { return Node{places.x[i], places.values[i][value]}; };
+  const Parabola curve(node(middle - 1), node(middle), node(middle + 1));
   if (!(curve.bend < 0.0)) return {};
   const double top = curve.vertex();
   if (!(top > 0.0 && top < 1.0)) return {};
-  const double gain = part_of(curve.at(top) - largest, largest);
-  if (!(gain > least_gain)) return {};
-  for (int i = 1; i < last; ++i) {
-    if (std::abs(top - node(i, value).first) < same_place) return {};
+  for (std::size_t i = 1; i < last; ++i) {
+    if (std::abs(top - places.x[i]) < same_place) return {};
   }
+  const double gain = part_of(curve.at(top) - largest, largest);
   return {top, gain, gain};
 }
 
@@ -107,6 +114,7 @@ PeakSearch::Candidate PeakSearch::by_looks(std::size_t value, double largest) co
 PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest) const {
   const double start = start_.values[value], end = end_.values[value], rise = end - start;
   if (ends_ < 3 || !(rise > steep * end && before_.values[value] < far_below * end)) return {};
+  if (!(end_.x - start_.x < start_.x - before_.x)) return {};  // steps shorten towards a sharp peak
   const double gain = part_of(end + (1.0 - beside_end) * rise - largest, largest);
   return {beside_end, gain, gain};
 }
@@ -114,10 +122,11 @@ PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest
 double PeakSearch::next(std::span<const double> largest) {
   if (ends_ < 2) return 0.0;
   const bool looked = looks_ + extras_ > 0;
+  const Places known = looked ? places() : Places{};
   Candidate best, likely;
   for (std::size_t i = 0; i < largest.size(); ++i) {
-    const Candidate one = looked ? by_looks(i, largest[i]) : by_ends(i, largest[i]);
-    if (one.gain > best.gain) best = one;
+    const Candidate one = looked ? by_looks(known, i, largest[i]) : by_ends(i, largest[i]);
+    if (one.gain > best.gain && (one.likely > 0.0 || one.gain > fair_gain)) best = one;
     if (one.likely > likely.likely) likely = one;
   }
   const bool usual = extras_ == 0 && looks_ < most_looks && best.gain > least_gain;
@@ -146,10 +155,6 @@ void PeakSearch::seen(double s, std::span<const double> values) {
   Point& point = inner_[at(looks_ + extras_ - 1)];
   point.x = s;
   std::ranges::copy(values, point.values.begin());
-  int place = looks_ + extras_;  // that of the end of the step until now
-  order_[at(place + 1)] = 1;
-  for (; place > 1 && inner_[at(order_[at(place - 1)] - 2)].x > s; --place) order_[at(place)] = order_[at(place - 1)];
-  order_[at(place)] = looks_ + extras_ + 1;
 }
 
 }  // namespace freeplay

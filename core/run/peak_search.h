@@ -3,7 +3,6 @@
 
 #include <array>
 #include <span>
-#include <utility>
 #include <vector>
 
 namespace freeplay {
@@ -11,9 +10,9 @@ namespace freeplay {
 /// Steps that an accuracy chooses may be long against the bend of forces: the largest value then lies inside one and at
 /// neither end. The parabola through the last three ends, and after a look that about the highest place, says
 /// where and how much. Looks cost about as much as a stage of an integrator: a step gets three at most, and all
-/// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued. As
-/// many again are kept for what is then left of a thousandth or more, of values that are largest at another place or
-/// that rise steeply.
+/// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued;
+/// where the parabola expects nothing, there must be room for a thousandth. As many again are kept for what is then
+/// left of a thousandth or more, of values that are largest at another place or that rise steeply.
 class PeakSearch {
  public:
   explicit PeakSearch(std::size_t values);
@@ -47,18 +46,22 @@ class PeakSearch {
     double s = 0.0, gain = 0.0;  ///< gain: at most, as a part of the largest value
     double likely = 0.0;         ///< the same by the parabola alone
   };
-  std::pair<double, double> node(int place, std::size_t value) const;  // its fraction of the step, its value
+  /// What is known of the present step, in order: its start, looks and its end.
+  struct Places {
+    int count = 0;
+    std::array<double, most_looks + most_extras + 2> x;
+    std::array<const double*, most_looks + most_extras + 2> values;
+  };
+  Places places() const;
   Candidate by_ends(std::size_t value, double largest) const;
-  Candidate by_looks(std::size_t value, double largest) const;
+  static Candidate by_looks(const Places& places, std::size_t value, double largest);
   Candidate by_steepness(std::size_t value, double largest) const;
   double next_extra(Candidate best, std::span<const double> largest);
 
   Point before_, start_, end_;
   std::array<Point, most_looks + most_extras> inner_;  ///< looks at the present step
-  /// Places in it that are known, in their order: 0: its start, 1: its end, 2 and on: looks.
-  std::array<int, most_looks + most_extras + 2> order_{};
-  int ends_ = 0;                ///< known in a row, at most 3
-  int looks_ = 0, extras_ = 0;  ///< at the present step
+  int ends_ = 0;                                       ///< known in a row, at most 3
+  int looks_ = 0, extras_ = 0;                         ///< at the present step
   double credit_, fair_credit_;
 };
 
