@@ -108,7 +108,7 @@ bool IndexOneSolver::factor() {
   return valid_;
 }
 
-bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
+bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers, bool solved) {
   bool fresh = false;
   if (!has_factors()) {
     if (!factor()) return false;
@@ -116,7 +116,9 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
   }
   double previous = std::numeric_limits<double>::infinity();
   for (int iteration = 0; iteration < refinement_limit; ++iteration) {
-    const double change = refine_once(x_a, x_c, scale, multipliers);
+    if (!solved) solve_remainder(x_a, x_c);
+    solved = false;
+    const double change = add_update(x_a, x_c, scale, multipliers);
     if (std::isnan(change)) {
       equations_.note_trouble("a number in the state is not finite");
       return false;
@@ -137,7 +139,7 @@ bool IndexOneSolver::refine(std::span<double> x_a, std::span<double> x_c, double
   return true;
 }
 
-double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
+void IndexOneSolver::solve_remainder(std::span<const double> x_a, std::span<const double> x_c) {
   const std::size_t nv = x_a.size(), nc = x_c.size();
   const std::span<double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
   std::ranges::fill(motion, 0.0);
@@ -146,6 +148,11 @@ double IndexOneSolver::refine_once(std::span<double> x_a, std::span<double> x_c,
   for (std::size_t i = 0; i < nv; ++i) motion[i] = right_a_[i] - system_.inertia().mass()[i] * x_a[i] - motion[i];
   for (std::size_t r = 0; r < nc; ++r) pressure[r] = dependent_[r] ? 0.0 : right_c_[r] - pressure[r];
   solve_linear(motion, pressure);
+}
+
+double IndexOneSolver::add_update(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers) {
+  const std::size_t nv = x_a.size(), nc = x_c.size();
+  const std::span<const double> motion = std::span(update_).first(nv), pressure = std::span(update_).subspan(nv);
   for (std::size_t i = 0; i < nv; ++i) x_a[i] += motion[i];
   for (std::size_t r = 0; r < nc; ++r) x_c[r] += pressure[r];
   const double moved = equations_.norm(motion), pressed = largest(pressure);
@@ -278,9 +285,11 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   if (velocities_hold(state.v)) return true;
   const double speed = equations_.norm(state.v);
   if (!is_factored_here() && !factor()) return false;
+  bool solved = false;  // update_ is the first one of a refinement
   for (int pass = 0; pass < quick_passes; ++pass) {
     solve_rows(right_c_);
-    if (!(equations_.norm(std::span(update_).first(increment_.size())) <= small_change * speed)) break;
+    solved = !(equations_.norm(std::span(update_).first(increment_.size())) <= small_change * speed);
+    if (solved) break;
     for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
     for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
     // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
@@ -291,7 +300,7 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   std::ranges::copy(multipliers_, first_multipliers_.begin());
   std::ranges::fill(multipliers_, 0.0);
   // The change is a small part of v: digits below the rounding of v are not needed.
-  if (!refine(increment_, multipliers_, speed)) return false;
+  if (!refine(increment_, multipliers_, speed, false, solved)) return false;
   for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
   for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += first_multipliers_[r];
   return true;

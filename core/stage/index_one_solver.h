@@ -56,11 +56,14 @@ class IndexOneSolver {
   /// The factors are of the rows that are kept at present.
   bool has_factors() const { return valid_ && pattern_choice_ == equations_.rows().choice(); }
   /// Iterates x += A0^-1 (b - A x) at the present evaluation, b in (right_a_, right_c_), until x_a is right to
-  /// rounding, of itself or of `scale`, and with `multipliers` x_c, too.
-  bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false);
-  /// One such update. Returns how large it is, relative.
+  /// rounding, of itself or of `scale`, and with `multipliers` x_c, too. `solved`: update_ is the first one already.
+  bool refine(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers = false,
+              bool solved = false);
   void solve_linear(std::span<double> x, std::span<double> l);
-  double refine_once(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers);
+  /// update_ <- A0^-1 (b - A x)
+  void solve_remainder(std::span<const double> x_a, std::span<const double> x_c);
+  /// Returns how large the update is, relative; NaN where it is not finite.
+  double add_update(std::span<double> x_a, std::span<double> x_c, double scale, bool multipliers);
   bool accelerations_by_units(int joint, std::span<const std::size_t> directions, const double* arm, std::size_t width,
                               std::span<double> out);
   bool move_by_forces();
