@@ -77,10 +77,16 @@ TEST(MotionKink, EveryEndOfARepeatedTableIsMet) {
 }
 
 TEST(MotionKink, AJumpOfThePositionEndsTheRunAndNamesTheDriver) {
-  const ModelRun run(cart("table: {points: [[0, 0], [0.2, 0.1]], interpolation: linear, outside: repeat}"));
-  EXPECT_EQ(run.outcome().status, RunStatus::failed);
-  EXPECT_EQ(run.outcome().exit_code, 4);
-  EXPECT_EQ(run.outcome().reason, "t = 0.2 s: driver 'motor': the prescribed position jumps; no motion follows it");
+  for (const std::string motion : {"table: {points: [[0, 0], [0.2, 0.1]], interpolation: linear, outside: repeat}",
+                                   "value: '1e-4*sign(t - 0.2)'"}) {
+    // Also steps of one size, to whose ends the jump comes or not.
+    for (const char* steps : {"accuracy: 1e-9", "step: 1e-3", "step: 0.7e-3"}) {
+      const ModelRun run(replaced(cart(motion), "accuracy: 1e-9", steps));
+      EXPECT_EQ(run.outcome().status, RunStatus::failed) << motion << " " << steps;
+      EXPECT_EQ(run.outcome().exit_code, 4);
+      EXPECT_EQ(run.outcome().reason, "t = 0.2 s: driver 'motor': the prescribed position jumps; no motion follows it");
+    }
+  }
 }
 
 }  // namespace
