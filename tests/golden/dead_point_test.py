@@ -1,5 +1,6 @@
 """Drivers that ask for a position that the mechanism cannot take: the message names it, and advises nothing in vain."""
 import csv
+import json
 import math
 import re
 import unittest
@@ -163,6 +164,12 @@ class DeadPoint(ProgramTest):
         said = re.search(r"at (\S+) deg joint '[BCD]' would stay open by (\S+) m", line)
         self.assertAlmostEqual(180, float(said.group(1)), delta=0.1)
         self.assertAlmostEqual(gap, float(said.group(2)), delta=1e-3 * gap)
+
+    def test_the_verdict_names_the_dead_point_before_what_it_leads_to(self):
+        for text in (SLIDE.replace("step: 1 ms", "accuracy: 1 um"), FOUR_BAR % (0.3, PLAY, SPEED, "A: 20 deg", "accuracy: 1 um")):
+            self.reason(text)
+            first, *_ = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
+            self.assertRegex(first["message"], r"^the mechanism comes to a dead point: (body|joint) '\w+' at t = [^;]+$")
 
     def test_ideal_joints_in_steps_of_every_kind(self):
         limit = math.degrees(math.acos((0.2**2 + 0.4**2 - 0.4**2) / (2 * 0.2 * 0.4)))
