@@ -49,6 +49,13 @@ void StepAcceptance::add_energy() {
                             std::span<const double>(run_.trial.z()).last(at(run_.flows)));
   }
   if (run_.energy.add_smooth(dt, run_.e_trial, run_.trial.lambda())) return;
+  if (run_.adaptive && run_.solver.regularity() >= near_singular &&
+      run_.energy.drivers_change(dt, run_.e_trial, run_.trial.lambda())) {
+    const IndependentRows::Regularity then = run_.solver.rows().regularities();
+    const bool solved = step_corners_.flow_inside(run_.accepted.t() + 0.5 * dt, flow_half_way_);
+    run_.solver.rows().put_back(then);
+    if (solved) return run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
+  }
   DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
       .at(0.5, run_.between);
   std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
