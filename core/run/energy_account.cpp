@@ -10,7 +10,6 @@ namespace {
 constexpr double same_length = 1e-6;      // of steps, relative
 constexpr double bends_little = 1e-6;     // third differences of powers, relative: the cubic errs by a fortieth of that
 constexpr double nearly_straight = 3e-3;  // what is left of a smooth power is then a small part of that
-constexpr double noticed_change = 1e-7;   // of the power of drivers times the step, of the same
 constexpr double noticed_work = 1e-8;  // what powers off a straight line may make, of the energy at the start and moved
 }  // namespace
 
@@ -212,17 +211,6 @@ bool EnergyAccount::bends(double s, const Evaluation& e, std::span<const double>
     off += std::abs(integral_inside_[i] - power_before_[i] - s * (power_[i] - power_before_[i]));
   }
   return off * dt_ > noticed_work * (std::abs(initial_) + exchanged_);
-}
-
-bool EnergyAccount::drivers_change(double dt, const Evaluation& e, std::span<const double> lambda) {
-  const std::vector<Driver>& drivers = system_.model().drivers;
-  if (std::ranges::none_of(drivers, [](const Driver& driver) { return prescribes(driver.kind); })) return false;
-  flow(e, lambda, power_end_);
-  double change = 0.0;
-  for (std::size_t d = 0; d < drivers.size(); ++d) {
-    if (prescribes(drivers[d].kind)) change += std::abs(power_end_[d] - power_[d]);
-  }
-  return change * dt > noticed_change * (std::abs(initial_) + exchanged_);
 }
 
 void EnergyAccount::fill_bent(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,

@@ -73,9 +73,6 @@ class EnergyAccount final : public Flows {
   /// Whether powers of joints at the fraction s of the last step are so far from a straight line that the work there
   /// wants more than a parabola: see_half_way() half way from s to the nearer end, then fill_bent().
   bool bends(double s, const Evaluation& e, std::span<const double> lambda);
-  /// Whether the power of drivers that prescribe motion changes over a step so much that their efforts in its middle
-  /// are to be solved for: as means of both ends these are of a lower order than the powers of what acts by forces.
-  bool drivers_change(double dt, const Evaluation& e, std::span<const double> lambda);
   void see_half_way(const Evaluation& e, std::span<const double> lambda) { flow(e, lambda, power_end_); }
   /// As fill_inside(), by Simpson's rule from the nearer end.
   void fill_bent(double s, const Evaluation& e, std::span<const double> lambda, const Channels& channels,
