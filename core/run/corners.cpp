@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -170,7 +171,11 @@ bool Corners::stops_at_jump(double kink) {
     const double moves = 4.0 * margin(kink) * (std::abs(from.rate) + std::abs(to.rate));
     const double rounded = smallest_jump * std::max(std::abs(from.value), std::abs(to.value));
     const double least = std::max(smallest_jump * run_.system.size(), rounded) + moves;
-    if (row >= 0 && std::abs(to.value - from.value) > least) return !fail_at_jump(kink, row);
+    // After a turn a driven body is where it was, as by a table from 0 to 360 degrees that repeats; rows count turns.
+    const bool angle = row >= run_.system.layout().nc() &&
+                       run_.system.joints().layout(run_.model.drivers[at(d)].joint).coordinate == Coordinate::angle;
+    const double by = angle ? wrapped(to.value - from.value) : to.value - from.value;
+    if (row >= 0 && std::abs(by) > least) return !fail_at_jump(kink, row);
   }
   return false;
 }
@@ -186,8 +191,9 @@ void Corners::note_driven(const Evaluation& e) {
 int Corners::row_that_jumps() const {
   const double allowed_gap = 1e-9 * run_.system.size();
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
-    const std::size_t driven = (i - run_.accepted.q().size()) / 3;
-    if (std::abs(run_.e_accepted->q[i] - q_before_[i]) > allowed_gap) return run_.system.driven().last_row(driven);
+    const std::size_t driven = (i - run_.accepted.q().size()) / 3, part = (i - run_.accepted.q().size()) % 3;
+    const double by = run_.e_accepted->q[i] - q_before_[i];
+    if (std::abs(part == 2 ? wrapped(by) : by) > allowed_gap) return run_.system.driven().last_row(driven);
   }
   for (std::size_t r = 0; r < run_.e_accepted->phi.size(); ++r) {
     if (std::abs(run_.e_accepted->phi[r]) > allowed_gap) return static_cast<int>(r);
