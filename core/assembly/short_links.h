@@ -9,7 +9,7 @@
 namespace freeplay {
 
 /// `doubtful-clearance`: of a body that only two pins hold, nearer to each other than the clearance of one of them.
-void doubt_short_links(
+[[gnu::cold]] void doubt_short_links(
     const Model& model,
     const std::function<void(const char* id, const std::string& message, const JointElement&)>& doubt);
 

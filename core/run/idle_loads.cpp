@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/index.h"
 
@@ -9,7 +10,7 @@ namespace freeplay {
 namespace {
 
 constexpr int most_columns = 300;   // beyond, loads only count as idle where all rows together hold everything
-constexpr double no_pivot = 1e-10;  // of the largest
+constexpr double no_pivot = 1e-10;  // of the largest entry of the row
 constexpr double no_motion = 1e-8;  // of the free motion that moves it
 
 }  // namespace
@@ -35,7 +36,7 @@ int IdleLoads::add(ActsOn load) {
   if (same != loads_.end()) return static_cast<int>(same - loads_.begin());
   const Layout& layout = system_.layout();
   if (loads_.empty() && layout.nv() <= most_columns) {
-    rows_ = Eigen::MatrixXd::Zero(layout.nc(), layout.nv());
+    rows_.setZero(layout.nc(), layout.nv());
     pivots_.reserve(at(layout.nc()));
     taken_.resize(at(layout.nv()));
   }
@@ -51,16 +52,14 @@ void IdleLoads::look(const IndependentRows& rows, const ConstraintValues& e) {
   const bool other = rows.rank() != rank_;
   if (other) looks_ = 0, next_look_ = 0, rank_ = rows.rank();
   if (looks_++ < next_look_) return;
-  next_look_ = 2 * looks_;
-  if (rows.hold_everything()) {
-    std::ranges::fill(held_, char{1});
-  } else if (rows_.cols() > 0 && rows.is_known()) {
-    find_held(e);
-  } else {
-    std::ranges::fill(held_, char{0});
-  }
-  for (Load& load : loads_)
+  std::ranges::fill(held_, rows.hold_everything() ? char{1} : char{0});
+  if (!rows.hold_everything() && rows_.cols() > 0 && rows.is_known()) find_held(e);
+  bool any = false;
+  for (Load& load : loads_) {
     load.idle = (other || load.idle) && holds(load.on.a, load.on.turns) && holds(load.on.b, load.on.turns);
+    any = any || load.idle;
+  }
+  next_look_ = any ? 2 * looks_ : std::numeric_limits<long>::max();
 }
 
 bool IdleLoads::holds(BodyId body, bool turns) const {
@@ -71,7 +70,7 @@ bool IdleLoads::holds(BodyId body, bool turns) const {
   return std::ranges::all_of(columns, [](char held) { return held != 0; });
 }
 
-// Gauss and Jordan with the largest pivot of all: a row that has none but its pivot left holds that column.
+// Gauss and Jordan, row by row: one that has none but its pivot left holds that column.
 void IdleLoads::find_held(const ConstraintValues& e) {
   system_.constraints().jacobian().list(e.jacobian, entries_);
   rows_.setZero();
@@ -81,19 +80,21 @@ void IdleLoads::find_held(const ConstraintValues& e) {
     rows_(entry.row(), entry.col()) += unit * entry.value();
   }
   std::ranges::fill(taken_, char{0});
-  std::ranges::fill(held_, char{0});
   pivots_.clear();
-  double largest = 0.0;
-  for (Eigen::Index k = 0; k < std::min(rows_.rows(), rows_.cols()); ++k) {
-    Eigen::Index row = 0, column = 0;
-    const double pivot = rows_.bottomRows(rows_.rows() - k).cwiseAbs().maxCoeff(&row, &column);
-    largest = std::max(largest, pivot);
-    if (!(pivot > no_pivot * largest)) break;
-    rows_.row(k).swap(rows_.row(k + row));
-    rows_.row(k) /= rows_(k, column);
-    for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
-      if (const double factor = rows_(i, column); i != k && factor != 0.0) rows_.row(i) -= factor * rows_.row(k);
+  for (Eigen::Index r = 0; r < rows_.rows(); ++r) {
+    auto row = rows_.row(r);
+    const double size = row.cwiseAbs().maxCoeff();
+    const auto kept = static_cast<Eigen::Index>(pivots_.size());
+    for (Eigen::Index k = 0; k < kept; ++k) {
+      if (const double part = row[pivots_[static_cast<std::size_t>(k)]]; part != 0.0) row -= part * rows_.row(k);
     }
+    Eigen::Index column = 0;
+    if (!(row.cwiseAbs().maxCoeff(&column) > no_pivot * size)) continue;
+    row /= row[column];
+    for (Eigen::Index k = 0; k < kept; ++k) {
+      if (const double part = rows_(k, column); part != 0.0) rows_.row(k) -= part * row;
+    }
+    if (r != kept) rows_.row(kept) = row;
     pivots_.push_back(static_cast<int>(column));
     taken_[at(pivots_.back())] = 1;
   }

@@ -17,10 +17,10 @@ struct ActsOn {
   bool operator==(const ActsOn&) const = default;
 };
 
-ActsOn acts_on(const System& system, const AppliedForce& force);
-ActsOn acts_on(const System& system, const JointElement& joint);
+[[gnu::cold]] ActsOn acts_on(const System& system, const AppliedForce& force);
+[[gnu::cold]] ActsOn acts_on(const System& system, const JointElement& joint);
 /// That applies an effort.
-ActsOn acts_on(const System& system, const Driver& driver);
+[[gnu::cold]] ActsOn acts_on(const System& system, const Driver& driver);
 
 /// No error of a step shows what such a load does to reactions and efforts of drivers. Allocates when a load is added.
 class IdleLoads {
@@ -28,7 +28,7 @@ class IdleLoads {
   explicit IdleLoads(const System& system);
 
   /// Returns the number of the load.
-  int add(ActsOn load);
+  [[gnu::cold]] int add(ActsOn load);
   /// From an accepted state, before the step that is made from there.
   void look(const IndependentRows& rows, const ConstraintValues& e);
   bool is_idle(int load) const { return load >= 0 && loads_[static_cast<std::size_t>(load)].idle; }
@@ -47,7 +47,7 @@ class IdleLoads {
       archive(self.idle);
     }
   };
-  void find_held(const ConstraintValues& e);
+  [[gnu::cold]] void find_held(const ConstraintValues& e);
   bool holds(BodyId body, bool turns) const;
 
   const System& system_;
@@ -55,7 +55,7 @@ class IdleLoads {
   int rank_ = -2;                   // none yet
   long looks_ = 0, next_look_ = 0;  // since the rank is what it is
   std::vector<SparseEntry> entries_;
-  Eigen::MatrixXd rows_;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows_;
   std::vector<int> pivots_;  // column by row
   std::vector<char> taken_;  // by column: a pivot
   std::vector<char> held_;   // by column: no free motion has a part in it

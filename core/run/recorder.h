@@ -98,8 +98,8 @@ class Recorder {
   bool sinks_are_well();
   bool observe_inside(double t, const Ends& step, std::span<double> row);
   void seek_peaks(const Ends& step);
-  double distance_at(double t, const Ends& step);
-  void doubt_forces(const Ends& step, double t);
+  [[gnu::cold]] double distance_at(double t, const Ends& step);
+  [[gnu::cold]] void doubt_forces(const Ends& step, double t);
   double row_time(long index) const;
 
   RunContext& run_;
