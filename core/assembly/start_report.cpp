@@ -148,7 +148,9 @@ TwinStart twin_start(const System& closed, std::span<const double> taken, std::s
   }
   const Body& body = model.bodies[at(worst)];
   const auto where = [&](std::span<const double> q) {
-    if (turns && width == 3) return fmt::format("{:.1f} deg", degrees(wrapped(q[3 * at(worst) + 2])));
+    // As the rows have it; the other within half a turn of that.
+    const std::size_t angle = 3 * at(worst) + 2;
+    if (turns && width == 3) return fmt::format("{:.1f} deg", degrees(taken[angle] + wrapped(q[angle] - taken[angle])));
     const Pose pose = closed.coordinates().frame_pose(worst, q);
     if (width == 3) return fmt::format("[{:.4g}, {:.4g}] m", pose.position[0], pose.position[1]);
     if (!turns) return fmt::format("[{:.4g}, {:.4g}, {:.4g}] m", pose.position[0], pose.position[1], pose.position[2]);

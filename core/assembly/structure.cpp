@@ -19,6 +19,7 @@
 #include "assembly/play_gap.h"
 #include "assembly/play_rows.h"
 #include "assembly/row_space.h"
+#include "assembly/short_links.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
@@ -48,9 +49,11 @@ class Examination {
       doubt("dead-point", words(*dead, model_), driver.name, driver.location);
     }
     find_loose_ends();
-    doubt_forces(released_, open_, [&](const char* id, const std::string& message, const JointElement& element) {
+    const auto doubt_element = [&](const char* id, const std::string& message, const JointElement& element) {
       doubt(id, message, element.name, element.location);
-    });
+    };
+    doubt_forces(released_, open_, doubt_element);
+    doubt_short_links(model_, doubt_element);
     judge_accuracy();
     judge_journals();
     judge_pairs();

@@ -24,14 +24,15 @@ std::string agreement_text(const Verification& v) {
       peaks +=
           fmt::format("{}{}: {} and {}", peaks.empty() ? "" : ", ", peak.name, number(peak.run), number(peak.second));
   }
+  const std::string throughout = fmt::format("positions agree to {} throughout", limit);
   const std::string difference =
       v.largest > v.limit
           ? fmt::format("positions agree to {} until {:.6g} s and differ by up to {:.2g} m, at {:.6g} s", limit,
                         v.agree_until, v.largest, v.at)
-          : fmt::format("positions agree to {} throughout", limit);
+          : throughout;
   switch (v.agreement) {
     case Agreement::agree:
-      return fmt::format("positions agree to {} throughout", limit);
+      return throughout;
     case Agreement::err:
       return (peaks.empty() ? difference : difference + "; peaks differ (" + peaks + ")") +
              ": one of both methods errs by more than that; ask for more accuracy, or for shorter steps, if it is too "

@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "results/load_judgement.h"
+#include "results/singular_judgement.h"
 #include "run/lasting_blows.h"
 #include "run/motion_period.h"
 
@@ -31,8 +32,6 @@ constexpr double typical_density = 7800.0;        // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound
 constexpr double of_reach = 1.1;                  // distance by what the lengths allow
 constexpr Limits of_drives{1e3, 1e6};             // force of a joint by those that drive and move the mechanism
-constexpr double of_beside = 1.5;                 // force close to a singular position by that not quite so close
-constexpr double of_last_step = 0.1;              // smooth change of such a force in a step, by the largest
 constexpr double most_play = 0.1;                 // clearance by the model's size
 constexpr double fewest_impacts = 10.0;           // in a window of statistics without a period
 constexpr double fewest_instants = 10.0, fewest_instants_of_accuracy = 2.0;  // that statistics are of
@@ -113,50 +112,6 @@ void judge_constraints(const RunRecord& record, Verdict& verdict) {
          .level = {},
          .message = fmt::format("joints are up to {:.2g} m apart where they should hold", residual)},
         verdict);
-}
-
-/// The largest force of a joint's rows in the table, which may lie inside a step; its time is not known.
-NearForce largest_of_rows(const RunRecord& record) {
-  const LargestValues& largest = record.statistics.largest();
-  NearForce most;
-  for (std::size_t j = 0; j < record.model.joints.size(); ++j) {
-    const JointElement& joint = record.model.joints[j];
-    if (joint.layout.constraint_rows == 0 || joint.gear >= 0) continue;
-    const std::size_t place = largest.places().force(static_cast<int>(j));
-    const double force = std::max(largest.in_window()[place], largest.before()[place]);
-    if (force > most.force) most = {.force = force, .joint = static_cast<int>(j)};
-  }
-  return most;
-}
-
-/// Multipliers are quotients of two vanishing numbers there. Where the position is one of the chosen rows alone, as of
-/// redundant constraints, forces pass it smoothly.
-void judge_singular(const RunRecord& record, Verdict& verdict) {
-  const RunExtremes& seen = record.extremes;
-  if (!(seen.passed_at < unbounded)) return;
-  // A long step may pass the position and end a little beside it, where forces are still far above all others.
-  NearForce near = seen.near.force > of_beside * seen.beside.force ? seen.near : seen.beside;
-  const bool above = near.force > seen.beside.force && seen.beside.force > 0.0;
-  double usual = above ? seen.beside.force : seen.away.force;
-  // So may a row inside such a step, of which its ends show nothing.
-  const NearForce most = largest_of_rows(record);
-  const bool inside = most.force > of_beside * seen.row_force;
-  if (inside && !(near.force > of_beside * usual)) usual = seen.row_force;
-  if (inside) near = most;
-  if (near.joint < 0 || !(near.force > of_beside * usual)) return;
-  // A quotient of roundings is another one at each step: what grows little by little is the force of the motion.
-  if (!inside && seen.near_change < of_last_step * near.force) return;
-  const std::string joint = name(record.model.joints[at(near.joint)]);
-  verdict.add({.id = "singular-position",
-               .level = Trust::doubtful,
-               .message = fmt::format("the mechanism went through a singular position of its constraints, first at t = "
-                                      "{:.6g} s: beside one, forces hang on where steps and rows end, whatever their "
-                                      "length; {} has {:.4g} N{}",
-                                      seen.passed_at, joint, near.force,
-                                      inside ? std::string() : fmt::format(" at t = {:.6g} s", near.time)),
-               .element = joint,
-               .value = near.force,
-               .limit = of_beside * usual});
 }
 
 void judge_steps_per_impact(const RunRecord& record, Verdict& verdict) {

@@ -74,6 +74,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       events(system, evaluations, adaptive, between, e_between),
       sleeping(system.joints(), system.forces(), evaluations),
       kinks(model),
+      idle_loads(system),
       watch(system, all_channels),
       inner(at(system.layout().nv()), at(system.layout().nz() + flows)),
       z_rate(at(system.layout().nz() + flows)) {

@@ -12,6 +12,7 @@
 #include "run/drive_kinks.h"
 #include "run/energy_account.h"
 #include "run/equations.h"
+#include "run/idle_loads.h"
 #include "run/inner_motion.h"
 #include "run/outcome.h"
 #include "run/sleeping_joints.h"
@@ -39,7 +40,7 @@ struct RunContext {
   static void exchange(Self& self, Archive& archive) {
     archive(self.accepted, self.between, self.evaluations, self.e_accepted, self.e_trial);
     if (self.own_between) archive(*self.own_between);
-    archive(self.solver, self.energy, self.events, self.kinks, self.sleeping, self.watch);
+    archive(self.solver, self.energy, self.events, self.kinks, self.idle_loads, self.sleeping, self.watch);
     archive(self.ended_inside, self.ended_abruptly);
     archive.list(self.first_forces);
     auto& counts = self.outcome;
@@ -66,6 +67,7 @@ struct RunContext {
   StepEvents events;
   SleepingJoints sleeping;
   DriveKinks kinks;  ///< of prescribed motions
+  IdleLoads idle_loads;
   RunWatch watch;
   InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside
   Outcome outcome;

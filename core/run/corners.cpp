@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "base/angle.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -39,7 +40,7 @@ Corners::Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt)
       driven_change_(run.e_accepted->driven_a.size()),
       impulses_(at(run.system.layout().all_rows())) {
   if (!run.adaptive) return;
-  inputs_.emplace(run.system, shortest_change(run.settings), run.allowed);
+  inputs_.emplace(run.system, shortest_change(run.settings), run.allowed, &run.idle_loads);
   too_short_ = inputs_->look_closer(shortest_part * (run.settings.end - run.settings.start));
 }
 
@@ -79,12 +80,12 @@ bool Corners::next_corner(double dt, double& corner) {
 
 bool Corners::resolve_inputs(double& dt) {
   if (!inputs_) return true;
-  const bool alone = run_.solver.rows().hold_everything();
-  dt = inputs_->resolved(run_.accepted.t(), dt, alone);
+  run_.idle_loads.look(run_.solver.rows(), run_.e_accepted);
+  dt = inputs_->resolved(run_.accepted.t(), dt);
   if (!inputs_->watches_joints()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   Fault fault;
-  return inputs_->resolved_by_joints(point(run_.accepted), run_.e_accepted, run_.accepted.t(), dt, alone, fault) ||
+  return inputs_->resolved_by_joints(point(run_.accepted), run_.e_accepted, run_.accepted.t(), dt, fault) ||
          failure_.fail_with(fault, run_.accepted.t());
 }
 
@@ -92,8 +93,7 @@ bool Corners::resolves_joints(double& dt) {
   if (!inputs_ || !inputs_->watches_joints()) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
   Fault fault;
-  const bool alone = run_.solver.rows().hold_everything();
-  return inputs_->resolved_by_joints(point(run_.trial), run_.e_trial, run_.accepted.t(), dt, alone, fault) ||
+  return inputs_->resolved_by_joints(point(run_.trial), run_.e_trial, run_.accepted.t(), dt, fault) ||
          failure_.fail_with(fault, run_.trial.t());
 }
 
@@ -103,12 +103,7 @@ bool Corners::loads_jump(double corner) {
   const auto jumps = [&](double from, double to, double rates) {
     return std::abs(to - from) > smallest_jump * std::max(std::abs(from), std::abs(to)) + 4.0 * margin(corner) * rates;
   };
-  MotionFault fault;
-  if (!run_.system.motions().evaluate(before, {motion_before_.data(), motion_before_.size()}, run_.motion_work,
-                                      fault) ||
-      !run_.system.motions().evaluate(after, {motion_after_.data(), motion_after_.size()}, run_.motion_work, fault)) {
-    return true;  // the run will meet it
-  }
+  if (!look_beside(corner)) return true;  // the run will meet it
   for (std::size_t d = 0; d < run_.model.drivers.size(); ++d) {
     if (prescribes(run_.model.drivers[d].kind)) continue;
     const TimeValue &from = motion_before_[d], &to = motion_after_[d];
@@ -154,14 +149,35 @@ bool Corners::pass_kink(double kink) {
     return failure_.fail(4, fmt::format("t = {:.9g} s: {}", kink, run_.solver.trouble()));
   }
   if (const int jumping = row_that_jumps(); jumping >= 0) {
-    return failure_.fail(4, fmt::format("t = {:.9g} s: {}: the prescribed position jumps; no motion follows it", kink,
-                                        failure_.row_name(jumping)));
+    return fail_at_jump(kink, jumping);
   }
   std::ranges::copy(run_.solver.impulse(), impulses_.begin());
   book_impulses(run_.e_accepted);
   if (!attempt_.restart()) return false;
   run_.accepted.t() = kink;
   return true;
+}
+
+bool Corners::fail_at_jump(double kink, int row) {
+  return failure_.fail(4, fmt::format("t = {:.9g} s: {}: the prescribed position jumps; no motion follows it", kink,
+                                      failure_.row_name(row)));
+}
+
+bool Corners::stops_at_jump(double kink) {
+  if (!look_beside(kink)) return false;
+  for (int d = 0; d < static_cast<int>(run_.model.drivers.size()); ++d) {
+    const int row = run_.system.layout().driver_row(d);
+    const TimeValue &from = motion_before_[at(d)], &to = motion_after_[at(d)];
+    const double moves = 4.0 * margin(kink) * (std::abs(from.rate) + std::abs(to.rate));
+    const double rounded = smallest_jump * std::max(std::abs(from.value), std::abs(to.value));
+    const double least = std::max(smallest_jump * run_.system.size(), rounded) + moves;
+    // After a turn a driven body is where it was, as by a table from 0 to 360 degrees that repeats; rows count turns.
+    const bool angle = row >= run_.system.layout().nc() &&
+                       run_.system.joints().layout(run_.model.drivers[at(d)].joint).coordinate == Coordinate::angle;
+    const double by = angle ? wrapped(to.value - from.value) : to.value - from.value;
+    if (row >= 0 && std::abs(by) > least) return !fail_at_jump(kink, row);
+  }
+  return false;
 }
 
 // Where drivers and driven bodies are, to be compared with how they go on.
@@ -175,8 +191,9 @@ void Corners::note_driven(const Evaluation& e) {
 int Corners::row_that_jumps() const {
   const double allowed_gap = 1e-9 * run_.system.size();
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
-    const std::size_t driven = (i - run_.accepted.q().size()) / 3;
-    if (std::abs(run_.e_accepted->q[i] - q_before_[i]) > allowed_gap) return run_.system.driven().last_row(driven);
+    const std::size_t driven = (i - run_.accepted.q().size()) / 3, part = (i - run_.accepted.q().size()) % 3;
+    const double by = run_.e_accepted->q[i] - q_before_[i];
+    if (std::abs(part == 2 ? wrapped(by) : by) > allowed_gap) return run_.system.driven().last_row(driven);
   }
   for (std::size_t r = 0; r < run_.e_accepted->phi.size(); ++r) {
     if (std::abs(run_.e_accepted->phi[r]) > allowed_gap) return static_cast<int>(r);
@@ -214,15 +231,18 @@ void Corners::book_jump(double kink) {
   book_impulses(run_.e_between);
 }
 
+// Motions before and after a kink. False where there is none, which the run will meet.
+bool Corners::look_beside(double kink) {
+  MotionFault fault;
+  return run_.system.motions().evaluate(kink - margin(kink), {motion_before_.data(), motion_before_.size()},
+                                        run_.motion_work, fault) &&
+         run_.system.motions().evaluate(kink + margin(kink), {motion_after_.data(), motion_after_.size()},
+                                        run_.motion_work, fault);
+}
+
 // Whether the speed of a driver jumps.
 bool Corners::note_jumps(double kink) {
-  MotionFault fault;
-  if (!run_.system.motions().evaluate(kink - margin(kink), {motion_before_.data(), motion_before_.size()},
-                                      run_.motion_work, fault) ||
-      !run_.system.motions().evaluate(kink + margin(kink), {motion_after_.data(), motion_after_.size()},
-                                      run_.motion_work, fault)) {
-    return false;  // the run will meet it
-  }
+  if (!look_beside(kink)) return false;
   bool any = false;
   for (std::size_t d = 0; d < speed_jumps_.size(); ++d) {
     if (run_.system.layout().driver_row(static_cast<int>(d)) < 0) continue;

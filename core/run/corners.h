@@ -44,6 +44,8 @@ class Corners {
   /// Of a step of fixed size that went over a kink: whether the speed of a driver jumps there; and the work of the
   /// blow.
   bool note_jumps(double kink);
+  /// Whether the position itself of one jumps there, and so ends the run.
+  [[gnu::cold]] bool stops_at_jump(double kink);
   void book_jump(double kink);
 
   /// Once the run is over: jumps of speeds; inputs that do more inside a step than it can see.
@@ -56,6 +58,8 @@ class Corners {
  private:
   [[gnu::cold]] void format_too_short();
   [[gnu::cold]] void format_declared(double step, std::span<const std::string> said);
+  bool look_beside(double kink);
+  [[gnu::cold]] bool fail_at_jump(double kink, int row);
   bool loads_jump(double corner);
   void note_driven(const Evaluation& e);
   int row_that_jumps() const;

@@ -274,10 +274,10 @@ void RunFailure::explain_dead_point() {
   auto why = why_out_of_reach(run_.equations->whole(), run_.equations->start().state, run_.outcome.time);
   if (!why) return explain_singular_position();
   run_.outcome.reason = std::move(*why);
+  const bool locked = run_.outcome.reason.ends_with("[locked]");
   for (TrustReason& reason : run_.outcome.doubts) {
-    const bool locked = run_.outcome.reason.ends_with("[locked]");
-    reason.message = reason.message.substr(0, reason.message.find(cause_words)) + std::string(cause_words) +
-                     (locked ? "the mechanism is locked" : "the mechanism comes to a dead point");
+    reason.message = fmt::format("the mechanism {}: {}", locked ? "is locked" : "comes to a dead point",
+                                 reason.message.substr(0, reason.message.find(cause_words)));
   }
 }
 

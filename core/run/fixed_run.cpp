@@ -61,6 +61,7 @@ bool FixedRun::step(double until) {
     if (last) dt = leg_.goal - run_.accepted.t();
     step_corners_.list(leg_.goal);
     const double end = last ? leg_.goal : run_.accepted.t() + dt, corner = step_corners_.at(end);
+    if (meets_jump(end)) return false;
     // The step that ends at a corner has the forces before it to its end.
     const bool to_corner = corner < unbounded;
     bool converged = false;
@@ -89,6 +90,14 @@ bool FixedRun::step(double until) {
     }
     return accept(run_ends ? unbounded : corner);
   }
+}
+
+// Of a prescribed position, before a time or at it.
+bool FixedRun::meets_jump(double end) {
+  return std::ranges::any_of(step_corners_.all(), [&](const StepCorners::Corner& corner) {
+    const bool inside = corner.of_motion && corner.time > run_.accepted.t() && step_corners_.before(corner.time) <= end;
+    return inside && !step_corners_.is_last(corner.time) && parts_.corners.stops_at_jump(corner.time);
+  });
 }
 
 // Of a joint whose turns are counted [rad/s].

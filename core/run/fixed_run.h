@@ -36,6 +36,7 @@ class FixedRun {
   bool begin_leg();
   bool step(double until);
   bool accept(double corner);
+  bool meets_jump(double end);
   double fastest_turn() const;
 
   const RunParts parts_;

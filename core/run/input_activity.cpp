@@ -74,12 +74,13 @@ InputActivity::Unit InputActivity::unit_of(DriverKind kind) {
   return Unit::other;
 }
 
-InputActivity::InputActivity(const System& system, double shortest, double allowed)
+InputActivity::InputActivity(const System& system, double shortest, double allowed, IdleLoads* idle)
     : system_(system),
       start_(system.model().settings.start),
       end_(system.model().settings.end),
       shortest_(shortest),
       light_(system, allowed),
+      idle_(idle),
       short_length_(light_.length()),
       small_angle_(short_length_ / system.size()),
       resolution_(0) {
@@ -87,12 +88,14 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const Driver& driver = model.drivers[at(d)];
     const CornerKind sharp = prescribes(driver.kind) ? CornerKind::motion : CornerKind::load;
+    const std::optional<ActsOn> on = prescribes(driver.kind) ? std::nullopt : std::optional(acts_on(system, driver));
     if (driver.table) {
-      tables_.push_back({&driver.name, driver.table.get(), sharp, unit_of(driver.kind), bends(d)});
+      tables_.push_back({&driver.name, driver.table.get(), sharp, unit_of(driver.kind), bends(d), load_on(on)});
     } else if (driver.kinematics < 0) {
-      add("driver", driver.name, driver.value, sharp, unit_of(driver.kind), bends(d));
+      add("driver", driver.name, driver.value, sharp, unit_of(driver.kind), bends(d), on);
     }
-    for (const Expression& part : driver.in_time) add("driver", driver.name, part, CornerKind::load, Unit::other);
+    for (const Expression& part : driver.in_time)
+      add("driver", driver.name, part, CornerKind::load, Unit::other, 0, on);
   }
   for (const InverseKinematics& entry : model.kinematics) {
     int moved = 0;
@@ -109,7 +112,9 @@ InputActivity::InputActivity(const System& system, double shortest, double allow
     // What a part of a formula makes of a force is not known.
     const Unit whole = force.kind == ForceKind::force ? Unit::force : Unit::torque;
     const Unit unit = force.by_motion.empty() ? whole : Unit::other;
-    for (const Expression& component : force.in_time) add("force", force.name, component, CornerKind::load, unit);
+    const ActsOn on = acts_on(system, force);
+    for (const Expression& component : force.in_time)
+      add("force", force.name, component, CornerKind::load, unit, 0, on);
   }
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) add_joint(j);
   std::size_t signals = 2;
@@ -124,10 +129,14 @@ int InputActivity::bends(int driver) const {
 }
 
 void InputActivity::add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
-                        Unit unit, int bends) {
+                        Unit unit, int bends, const std::optional<ActsOn>& on) {
   if (!expression.depends_on_time()) return;
-  formulas_.push_back(
-      {section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, shortest_, bends});
+  formulas_.push_back({section, &name, &expression, FormulaCourse(expression, start_, end_), sharp, unit, shortest_,
+                       bends, load_on(on)});
+}
+
+int InputActivity::load_on(const std::optional<ActsOn>& on) const {
+  return idle_ != nullptr && on ? idle_->add(*on) : -1;
 }
 
 double InputActivity::negligible(Unit unit, double dt) const {
@@ -155,7 +164,8 @@ void InputActivity::add_joint(int joint) {
         add("joint", element.name, *written, CornerKind::motion, Unit::other);
     }
   }
-  for (const Expression& part : element.in_time) add("joint", element.name, part, CornerKind::load, Unit::other);
+  const ActsOn on = acts_on(system_, element);
+  for (const Expression& part : element.in_time) add("joint", element.name, part, CornerKind::load, Unit::other, 0, on);
   double corner = 0.0;
   Fault fault;
   if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back({joint});
@@ -163,7 +173,7 @@ void InputActivity::add_joint(int joint) {
   const std::size_t rows = at(layout.constraint_rows), internal = at(layout.internal_variables);
   const std::size_t signals = rows + (layout.forces != 0 ? 12 + internal : 0);
   if (signals == 0 || layout.time_scale == unbounded) return;
-  joints_.push_back({joint, layout.time_scale > 0.0 ? layout.time_scale : shortest_, signals});
+  joints_.push_back({joint, layout.time_scale > 0.0 ? layout.time_scale : shortest_, signals, load_on(on)});
   rate_.resize(std::max(rate_.size(), internal + guard::marks));
   for (std::vector<double>* numbers : {&phi_, &nu_, &gamma_}) numbers->resize(std::max(numbers->size(), rows));
   jacobian_.resize(std::max(jacobian_.size(), 12 * rows));
@@ -245,10 +255,10 @@ auto InputActivity::light(Unit unit, int bends) const {
   };
 }
 
-double InputActivity::resolved(double t, double dt, bool alone) {
+double InputActivity::resolved(double t, double dt) {
   if (t >= seen_from_ && t + dt <= seen_to_) return dt;
-  for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt, alone);
-  for (Table& table : tables_) dt = resolved_table(table, t, dt, alone);
+  for (Formula& formula : formulas_) dt = resolved_formula(formula, t, dt);
+  for (Table& table : tables_) dt = resolved_table(table, t, dt);
   seen_from_ = t, seen_to_ = t + dt;
   return dt;
 }
@@ -307,8 +317,8 @@ void InputActivity::note_change(Input& input, double t, double dt, CornerKind sh
 }
 
 // A motion is looked at for its acceleration as well where no integrator sees that, and a load closely.
-double InputActivity::resolved_formula(Formula& formula, double t, double dt, bool alone) {
-  const bool closely = formula.bends > 0 || (alone && formula.sharp == CornerKind::load);
+double InputActivity::resolved_formula(Formula& formula, double t, double dt) {
+  const bool closely = formula.bends > 0 || (is_idle(formula.load) && formula.sharp == CornerKind::load);
   const double rate = formula.course.rate_within(t, t + dt);
   if (formula.bends > 0) {
     if (std::isfinite(rate)) dt = std::min(dt, slow_bend / rate);
@@ -331,25 +341,25 @@ double InputActivity::resolved_formula(Formula& formula, double t, double dt, bo
   return length;
 }
 
-double InputActivity::resolved_table(Table& table, double t, double dt, bool alone) {
+double InputActivity::resolved_table(Table& table, double t, double dt) {
   if (table.table->is_straight()) return dt;
   const double least = table.table->next_point(t) - t;
   if (dt <= least) return dt;
   const auto instants = [&](double from, double) { return TableInstants{table.table, from, from}; };
   const double wanted = std::min(dt, std::max(table.most, least));
   const double length = resolution_.resolved(
-      t, wanted, least, alone && table.sharp == CornerKind::load ? unbounded : 0.0, signals(table.bends),
+      t, wanted, least, is_idle(table.load) && table.sharp == CornerKind::load ? unbounded : 0.0, signals(table.bends),
       look_at(*table.table, table.bends), instants, light(table.unit, table.bends), part_of(table.bends));
   if (length < wanted) note_change(table, t, wanted, table.sharp);
   table.most = length < dt ? longer * length : unbounded;
   return length;
 }
 
-bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, bool alone,
-                                       Fault& fault) {
+bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault) {
   for (TimedJoint& timed : joints_) {
     if (dt <= unwatched(timed.shortest, timed.varies ? 0.0 : timed.most)) continue;
     bool good = true;
+    const bool idle = is_idle(timed.load);
     const JointInput in = system_.joints().input(timed.joint, here, e);
     const auto look = [&](double time, double* out) { return good = signals_of(timed, in, time, out, fault); };
     const std::size_t wrenches = system_.joints().layout(timed.joint).forces != 0 ? 12 : 0;
@@ -357,10 +367,10 @@ bool InputActivity::resolved_by_joints(const Point& here, const Evaluation& e, d
       return c >= wrenches ? 0.0 : negligible(c % 6 < 3 ? Unit::force : Unit::torque, step);
     };
     const double wanted = std::min(dt, timed.most), least = finest * timed.shortest;
-    const double strict_below = alone ? unbounded : coarsest * timed.shortest;
+    const double strict_below = idle ? unbounded : coarsest * timed.shortest;
     const double length = resolution_.resolved(t, wanted, least, strict_below, timed.signals, look,
                                                even(timed.shortest / samples_per_change), light,
-                                               alone ? StepResolution::finest : StepResolution::strict);
+                                               idle ? StepResolution::finest : StepResolution::strict);
     if (!good) return false;
     if (length < wanted) note_change(timed, t, wanted, CornerKind::load);
     timed.varies = timed.varies || length < wanted || resolution_.saw_change();

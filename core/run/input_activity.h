@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/formula_course.h"
+#include "run/idle_loads.h"
 #include "run/light_loads.h"
 #include "run/step_resolution.h"
 #include "run/unseen_change.h"
@@ -24,8 +25,9 @@ class InputActivity {
  public:
   /// `shortest`: duration of the changes that no step may go over where a
   /// formula cannot be analysed and a joint does not say how fine its dependence on time is [s]. `allowed`: by which
-  /// positions may err in a step [m]; what moves them by much less does not matter.
-  [[gnu::cold]] InputActivity(const System& system, double shortest, double allowed);
+  /// positions may err in a step [m]; what moves them by much less does not matter. `idle`: knows which loads move
+  /// nothing; none does where it is null.
+  [[gnu::cold]] InputActivity(const System& system, double shortest, double allowed, IdleLoads* idle = nullptr);
 
   /// Where formulas have changes that last less, and no rule says how fast they may change, they are looked at as
   /// closely as these need, down to a duration of `least` [s]. Returns what even that does not show.
@@ -40,11 +42,11 @@ class InputActivity {
 
   /// The length, dt or less, of a step from t that no corner lies in and that resolves all formulas and tables: their
   /// values at the samples are, to a hundredth of their range, what a polynomial through five of them makes of them; to
-  /// a fifty-thousandth where loads move nothing (`alone`), as then no error of a step shows what they do to forces.
-  double resolved(double t, double dt, bool alone = false);
+  /// a fifty-thousandth where a load moves nothing, as then no error of a step shows what it does to forces.
+  double resolved(double t, double dt);
   /// The same for joints that may depend on time, as `here` has their markers, internal variables and history: the
   /// start of the step, or its end once it is made.
-  bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, bool alone, Fault& fault);
+  bool resolved_by_joints(const Point& here, const Evaluation& e, double t, double& dt, Fault& fault);
   bool watches_joints() const { return !joints_.empty(); }
 
   /// Whether at t an input changes for a short time: between two corners of a formula or straight table, or declared by
@@ -93,6 +95,7 @@ class InputActivity {
     Unit unit;
     double shortest;          ///< duration of its changes that no step may go over [s]
     int bends = 0;            ///< the derivative that moves bodies whose motion is known: no error of a step shows it
+    int load = -1;            ///< its number in IdleLoads
     double most = unbounded;  ///< longest step to look at: some times the last that had to be shortened
     double quick_until = -unbounded;  ///< there the change lies that had it shortened
     template <class Self, class Archive>
@@ -106,6 +109,7 @@ class InputActivity {
     CornerKind sharp;
     Unit unit;
     int bends = 0;
+    int load = -1;
     double most = unbounded;
     double quick_until = -unbounded;
     Stretch between{};  ///< two points
@@ -126,6 +130,7 @@ class InputActivity {
     int joint;
     double shortest;
     std::size_t signals;
+    int load = -1;
     double most = unbounded;
     double quick_until = -unbounded;
     bool varies = false;  ///< it has been seen to: then the shortest steps are looked at, too
@@ -138,7 +143,10 @@ class InputActivity {
   static constexpr double samples_per_change = 3.0;  ///< in the duration of the shortest change
 
   [[gnu::cold]] void add(const char* section, const std::string& name, const Expression& expression, CornerKind sharp,
-                         Unit unit, int bends = 0);
+                         Unit unit, int bends = 0, const std::optional<ActsOn>& on = std::nullopt);
+  /// Its number in IdleLoads.
+  int load_on(const std::optional<ActsOn>& on) const;
+  bool is_idle(int load) const { return idle_ != nullptr && idle_->is_idle(load); }
   int bends(int driver) const;
   static Unit unit_of(DriverKind kind);
   double negligible(Unit unit, double dt) const;
@@ -148,8 +156,8 @@ class InputActivity {
   double quick(CornerKind sharp) const;
   template <class Input>
   void note_change(Input& input, double t, double dt, CornerKind sharp) const;
-  double resolved_formula(Formula& formula, double t, double dt, bool alone);
-  double resolved_table(Table& table, double t, double dt, bool alone);
+  double resolved_formula(Formula& formula, double t, double dt);
+  double resolved_table(Table& table, double t, double dt);
   bool signals_of(const TimedJoint& timed, JointInput in, double t, double* out, Fault& fault);
   /// Of the forces of a joint, between the ends of steps.
   std::optional<UnseenChange::Found> unseen_force(const TimedJoint& timed, double step, const Point& here,
@@ -158,6 +166,7 @@ class InputActivity {
   const System& system_;
   double start_, end_, shortest_;
   LightLoads light_;
+  IdleLoads* idle_;
   double short_length_, small_angle_;  ///< that do not matter [m, rad]
   std::vector<Formula> formulas_;
   std::vector<Table> tables_;

@@ -11,9 +11,9 @@ LoadChannels::LoadChannels(const System& system)
     : channels_(system.model(), system.layout(), system.markers(), system.joints()) {
   const Model& model = system.model();
   int switches = 0;
-  const auto add = [&](const MotionFormulas& formulas, std::string words, bool turns) {
+  const auto add = [&](const MotionFormulas& formulas, std::string words, bool turns, ActsOn on) {
     if (formulas.empty()) return;
-    Load load{&formulas, std::move(words), turns, switches, {}};
+    Load load{&formulas, std::move(words), turns, on, switches, {}};
     for (const MotionChannel& channel : formulas.channels) {
       load.units.push_back(channels_.turns(channel) ? 1.0 / system.size() : 1.0);
     }
@@ -21,16 +21,17 @@ LoadChannels::LoadChannels(const System& system)
     switches += formulas.switches();
   };
   for (const AppliedForce& force : model.forces) {
-    add(force.by_motion, fmt::format("force '{}'", force.name), force.kind == ForceKind::torque);
+    add(force.by_motion, fmt::format("force '{}'", force.name), force.kind == ForceKind::torque,
+        acts_on(system, force));
   }
   for (const Driver& driver : model.drivers) {
     if (prescribes(driver.kind)) continue;
     add(driver.by_motion, fmt::format("driver '{}'", driver.name),
-        system.joints().layout(driver.joint).coordinate == Coordinate::angle);
+        system.joints().layout(driver.joint).coordinate == Coordinate::angle, acts_on(system, driver));
   }
   for (const JointElement& joint : model.joints) {
     add(joint.by_motion, fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name),
-        joint.layout.coordinate == Coordinate::angle);
+        joint.layout.coordinate == Coordinate::angle, acts_on(system, joint));
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/jet.h"
+#include "run/idle_loads.h"
 #include "system/motion_channels.h"
 #include "system/system.h"
 
@@ -16,8 +17,9 @@ class LoadChannels {
 
   struct Load {
     const MotionFormulas* formulas;
-    std::string words;          ///< "force 'x'" or "driver 'x'"
-    bool turns;                 ///< a torque
+    std::string words;  ///< "force 'x'" or "driver 'x'"
+    bool turns;         ///< a torque
+    ActsOn on;
     int first_switch;           ///< of its formulas, in Layout::switches
     std::vector<double> units;  ///< by channel: what counts as 1 m, or as 1 m in a second
   };

@@ -31,7 +31,7 @@ constexpr int most_looks_at_ends = 200;                    // in one of one size
 MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.allowed), channels_(run.system) {
   std::size_t channels = 0, switches = 0;
   for (const LoadChannels::Load& load : channels_.loads()) {
-    Load own{&load, {}, MotionPieces(load.formulas->channels.size())};
+    Load own{&load, -1, {}, MotionPieces(load.formulas->channels.size())};
     int first = load.first_switch;
     for (const StateFormula& formula : load.formulas->formulas) {
       FormulaBounds bounds(formula);
@@ -45,6 +45,7 @@ MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.al
       switches = std::max(switches, at(formula.switches()));
     }
     if (own.formulas.empty()) continue;
+    if (run.adaptive) own.idle = run.idle_loads.add(load.on);
     own.end_values.resize(load.formulas->channels.size());
     channels = std::max(channels, load.formulas->channels.size());
     loads_.push_back(std::move(own));
@@ -100,7 +101,7 @@ bool MotionLoads::show(Course& course) {
   const double dt = course.part * course.load.motion.length();
   const double light = course.load.load->turns ? light_.torque(dt) : light_.force(dt);
   const double largest = std::max(std::abs(course.low), std::abs(course.high));
-  const double part = run_.adaptive && run_.solver.rows().hold_everything() ? shown_alone : shown_part;
+  const double part = run_.idle_loads.is_idle(course.load.idle) ? shown_alone : shown_part;
   course.allowed = std::max({part * (course.high - course.low), no_change * largest, light});
   return true;
 }

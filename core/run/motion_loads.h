@@ -62,6 +62,7 @@ class MotionLoads {
   };
   struct Load {
     const LoadChannels::Load* load;
+    int idle;  ///< its number in IdleLoads
     std::vector<Formula> formulas{};
     MotionPieces motion;
     std::vector<double> end_values{};  ///< of its channels, of the step before

@@ -98,6 +98,8 @@ class Recorder {
   bool sinks_are_well();
   bool observe_inside(double t, const Ends& step, std::span<double> row);
   void seek_peaks(const Ends& step);
+  [[gnu::cold]] double distance_at(double t, const Ends& step);
+  [[gnu::cold]] void doubt_forces(const Ends& step, double t);
   double row_time(long index) const;
 
   RunContext& run_;
@@ -116,7 +118,7 @@ class Recorder {
   PeakSearch contact_peaks_;  // the same of each contact
   EventStorm storm_;
   StepFeed feed_;
-  std::vector<double> row_, row_between_, row_middle_, residual_;
+  std::vector<double> row_, row_between_, row_middle_, row_aside_, residual_;
   bool row_is_known_ = false;        // row_ is that of the accepted state
   bool loads_are_known_ = false;     // its columns that know_loads() makes are
   bool contacts_are_known_ = false;  // of those that joints make of contacts

@@ -8,6 +8,9 @@
 #include "run/dense_step.h"
 
 namespace freeplay {
+namespace {
+constexpr double noticed_change = 1e-7;  // of the power of drivers times the step, of the work moved so far
+}  // namespace
 
 StepAcceptance::StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt& attempt, Recorder& recorder,
                                RunDoubts& doubts, EnergyGrowth& growth, Corners& corners, StepCorners& step_corners)
@@ -19,7 +22,8 @@ StepAcceptance::StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt
       growth_(growth),
       corners_(corners),
       step_corners_(step_corners),
-      flow_half_way_(at(run.energy.flows())) {}
+      flow_half_way_(at(run.energy.flows())),
+      flow_end_(flow_half_way_.size()) {}
 
 bool StepAcceptance::begin() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::start);
@@ -49,6 +53,12 @@ void StepAcceptance::add_energy() {
                             std::span<const double>(run_.trial.z()).last(at(run_.flows)));
   }
   if (run_.energy.add_smooth(dt, run_.e_trial, run_.trial.lambda())) return;
+  if (run_.adaptive && run_.solver.regularity() >= near_singular && drivers_change(dt)) {
+    const IndependentRows::Regularity then = run_.solver.rows().regularities();
+    const bool solved = step_corners_.flow_inside(run_.accepted.t() + 0.5 * dt, flow_half_way_);
+    run_.solver.rows().put_back(then);
+    if (solved) return run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
+  }
   DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
       .at(0.5, run_.between);
   std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
@@ -56,6 +66,20 @@ void StepAcceptance::add_energy() {
   const bool seen = run_.system.evaluate(point(run_.between), term_force, run_.e_between);
   run_.energy.flow(seen ? run_.e_between : run_.e_trial, run_.between.lambda(), flow_half_way_);
   run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
+}
+
+// Whether the power of drivers that prescribe motion changes over a step so much that their efforts in its middle are
+// to be solved for: as means of both ends these are of a lower order than the powers of what acts by forces.
+bool StepAcceptance::drivers_change(double dt) {
+  const std::vector<Driver>& drivers = run_.model.drivers;
+  if (std::ranges::none_of(drivers, [](const Driver& driver) { return prescribes(driver.kind); })) return false;
+  run_.energy.flow(run_.e_accepted, run_.accepted.lambda(), flow_half_way_);
+  run_.energy.flow(run_.e_trial, run_.trial.lambda(), flow_end_);
+  double change = 0.0;
+  for (std::size_t d = 0; d < drivers.size(); ++d) {
+    if (prescribes(drivers[d].kind)) change += std::abs(flow_end_[d] - flow_half_way_[d]);
+  }
+  return change * dt > noticed_change * run_.energy.exchanged();
 }
 
 bool StepAcceptance::add_history_losses() {

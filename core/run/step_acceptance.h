@@ -33,6 +33,7 @@ class StepAcceptance {
 
  private:
   void add_energy();
+  bool drivers_change(double dt);
   /// What joints lost as their history changed. False where one says no number.
   bool add_history_losses();
   bool apply_events(const StepEvents::Passage& located, double late);
@@ -47,7 +48,7 @@ class StepAcceptance {
   EnergyGrowth& growth_;
   Corners& corners_;
   StepCorners& step_corners_;
-  std::vector<double> flow_half_way_;
+  std::vector<double> flow_half_way_, flow_end_;
 };
 
 }  // namespace freeplay

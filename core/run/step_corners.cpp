@@ -60,7 +60,6 @@ bool StepCorners::pass(double corner) {
   return good;
 }
 
-// Powers at t, in the step that was just made or a little beyond its end, with the forces that act at that very time.
 bool StepCorners::flow_inside(double t, std::span<double> powers) {
   const State &start = run_.accepted, &end = run_.trial;
   State& between = run_.between;

@@ -34,10 +34,11 @@ class StepCorners {
   bool add_energy();
   /// The run goes on from a corner at the accepted state with what acts after it. False when the run is over.
   bool pass(double corner);
-
- private:
+  /// Powers at t, in the step that was just made or a little beyond its end, with the forces that act at that very
+  /// time. False where something cannot be evaluated.
   bool flow_inside(double t, std::span<double> powers);
 
+ private:
   RunContext& run_;
   StepAttempt& attempt_;
   DriveKinks load_kinks_;

@@ -64,6 +64,8 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     movers_.push_back({b, first + (planar_ ? 3 : 7), planar_ ? 2 : 3, gyration_squared});
   }
   seen_.size = system.size();
+  seen_.noisy.resize(model.joints.size());
+  values_aside_.resize(PeakValues(model, channels).size());
 }
 
 int RunWatch::add(std::span<const double> row, const Evaluation& e) {
@@ -159,6 +161,16 @@ void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
     seen_.row_force = of_rows;
     seen_.row_force_joint = joint;
     seen_.row_force_time = row[at(channels_.time)];
+  }
+}
+
+void RunWatch::add_beside(const LargestValues& largest, std::span<const double> farther, double t) {
+  const PeakValues& places = largest.places();
+  places.of(farther, values_aside_);
+  for (std::size_t j = 0; j < has_rows_.size(); ++j) {
+    const std::size_t place = places.force(static_cast<int>(j));
+    const double force = largest.last()[place];
+    if (has_rows_[j] != 0 && force > seen_.noisy[j].force) seen_.noisy[j] = {force, force - values_aside_[place], t};
   }
 }
 

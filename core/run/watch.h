@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "model/channel.h"
+#include "run/largest_values.h"
 #include "run/trust.h"
 #include "system/system.h"
 
@@ -61,6 +62,16 @@ struct RunExtremes {
   int row_force_joint = -1;
   /// The same where the motion is close to a singular position, not quite so close, and further away.
   NearForce near, beside, away;
+  /// Forces very close to a singular position, by joint: the largest, and by how much it is above that a little
+  /// farther away.
+  struct NoisyForce {
+    double force = 0.0, off = 0.0, time = 0.0;
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.force, self.off, self.time);
+    }
+  };
+  std::vector<NoisyForce> noisy;
   double near_change = 0.0;    ///< largest change of it from step to step near or beside [N]
   double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
   double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
@@ -76,7 +87,7 @@ struct RunExtremes {
   static void exchange(Self& self, Archive& archive) {
     archive(self.kinetic, self.potential, self.work, self.dissipated, self.residual, self.residual_time);
     archive(self.part_kinetic, self.part_force, self.row_force, self.row_force_time, self.row_force_joint);
-    archive(self.near, self.beside, self.away, self.near_change);
+    archive(self.near, self.beside, self.away, self.noisy, self.near_change);
     archive(self.applied_force);
     archive(self.drive_motion, self.drive_effort, self.beyond_reach, self.farthest_body, self.size);
     archive(self.least_regularity, self.singular_time, self.passed_at, self.open);
@@ -122,6 +133,8 @@ class RunWatch {
   /// The row of an accepted state; `e` is evaluated there. Of the joints with play the first that is where no journal
   /// can be, or carries what no material does; else -1.
   int add(std::span<const double> row, const Evaluation& e);
+  /// A row very close to a singular position, which `largest` saw last, and one a little farther from it.
+  [[gnu::cold]] void add_beside(const LargestValues& largest, std::span<const double> farther, double t);
   /// How near to a singular position the last step came (NewtonStageSolver::regularity).
   void add_regularity(double regularity, double t) { passage_.add(regularity, t, seen_); }
   /// EnergyAccount::exchanged() by now.
@@ -192,7 +205,8 @@ class RunWatch {
   };
   std::vector<Mover> movers_;
   int runaway_ = -1;
-  std::vector<char> has_rows_;  // by joint
+  std::vector<char> has_rows_;        // by joint
+  std::vector<double> values_aside_;  // PeakValues
   bool planar_;
   double last_force_ = 0.0;  // of joints' rows, at the last look [N]
   bool was_close_ = false;   // to a singular position, there

@@ -27,6 +27,8 @@ class IndependentRows {
   /// Whether a choice has been made.
   bool is_known() const { return rank_ >= 0; }
   void keep_all() { rank_ = jacobian_.layout().nc(); }
+  /// Of the rows that are kept; -1 before a choice has been made.
+  int rank() const { return rank_; }
   /// Whether the equations hold all velocities: everything moves as drivers do, whatever loads do.
   bool hold_everything() const { return rank_ >= jacobian_.layout().nv() || jacobian_.layout().nv() == 0; }
   /// Makes the choice anew from Phi_q of `e`. Returns whether it is another one than before.

@@ -28,6 +28,23 @@ TOOTH = "pitch_radius: 30 mm, gap: 0.1 mm"
 SLOT = "gap: 0.1 mm, pin_radius: 5 mm"
 
 
+def short_crank(space, axial, length, gap):
+    """A crank that drives a rod by a pin with play."""
+    tip = "[%s, 0]" % length if axial is None else "[%s, 0, %g]" % (length, axial)
+    inertia = "1e-4" if axial is None else "[1e-4, 1e-4, 1e-4]"
+    return """space: %s
+bodies:
+  crank: {mass: 0.1 kg, inertia: %s, frames: {tip: %s}}
+  rod: {mass: 0.1 kg, inertia: %s, frames: {tip: [%s]}}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  pin: {type: revolute, between: [crank/tip, rod], clearance: {bearing_radius: 10 mm, radial_clearance: %s, length: 20 mm,
+        material: {E: 207 GPa, nu: 0.3}, contact: {law: flores, restitution: 0.8}}}
+drivers: {m: {joint: main, kind: velocity, value: 10 rad/s}}
+simulation: {end: 1 ms, step: 10 us}
+""" % (space, inertia, tip, inertia, "0.1, 0" if axial is None else "0.1, 0, 0", gap)
+
+
 def change(block, key, value):
     return ", ".join("%s: %s" % (key, value) if part.startswith(key + ":") else part for part in block.split(", "))
 
@@ -138,6 +155,19 @@ class BadPlay(ModelTest):
                 self.assertIn(words, err)
                 self.assertIn("[doubtful-clearance]", err)
                 self.assertIn("check 'initial'", err)
+
+    def test_a_link_that_is_shorter_than_its_play_is_doubted(self):
+        for space, axial in (("planar", None), ("spatial", 0.0), ("spatial", 0.03)):
+            for length, gap, doubted in (("50 um", "0.5 mm", True), ("0.49 mm", "0.5 mm", True), ("0.51 mm", "0.5 mm", False),
+                                         ("0", "0.5 mm", False), ("50 um", "20 um", False)):
+                with self.subTest(space=space, axial=axial, length=length, gap=gap):
+                    _, err = self.freeplay("validate", self.model(short_crank(space, axial, length, gap)))
+                    said = [line for line in err.splitlines() if "can go round in it" in line]
+                    self.assertEqual(1 if doubted else 0, len(said), err)
+                    for line in said:
+                        self.assertIn("the clearance of joint 'pin' is 0.0005 m", line)
+                        self.assertIn("of body 'crank'", line)
+                        self.assertIn("[doubtful-clearance]", line)
 
 
 if __name__ == "__main__":

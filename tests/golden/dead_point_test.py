@@ -1,5 +1,7 @@
 """Drivers that ask for a position that the mechanism cannot take: the message names it, and advises nothing in vain."""
 import csv
+import itertools
+import json
 import math
 import re
 import unittest
@@ -163,6 +165,33 @@ class DeadPoint(ProgramTest):
         said = re.search(r"at (\S+) deg joint '[BCD]' would stay open by (\S+) m", line)
         self.assertAlmostEqual(180, float(said.group(1)), delta=0.1)
         self.assertAlmostEqual(gap, float(said.group(2)), delta=1e-3 * gap)
+
+    def test_peaks_that_roundings_make_beside_the_flat_position_are_doubted(self):
+        # Nothing but its own inertia acts: by omega^2 and the centre of mass in the middle the bar pulls each pin with 5 N.
+        text = FOLDS % {"crank": 0.1, "bar": 0.3, "rocker": 0.1, "base": 0.3, "start": 60, "end": 60}
+        text = text.replace("com: [0.1, 0]", "com: [0.15, 0]").replace("DRIVER\n", "").replace(
+            "initial: {", "initial: {speeds: {A: -10 rad/s}, ").replace("end: 1.3 s, ", "end: 1 s, output: {interval: 1 ms}, ")
+        doubted, high = 0, 0
+        for integrator, accuracy in itertools.product(("bathe", "dopri5", "verner7", "hht"), ("10 um", "1 um", "100 nm", "10 nm")):
+            self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force", "--quiet", "--integrator", integrator,
+                          "--accuracy", accuracy)
+            summary = json.loads(self.read("r", "summary.json"))
+            doubts = [reason for reason in summary["trust"]["reasons"] if reason["id"] == "singular-position"]
+            worst = max(summary["joints"][pin]["max_force"] for pin in "BC")
+            with self.subTest(integrator=integrator, accuracy=accuracy, worst=worst):
+                if worst > 1.04 * 5.0:
+                    self.assertEqual(1, len(doubts))
+                if worst < 1.015 * 5.0:
+                    self.assertEqual([], summary["trust"]["reasons"])
+            doubted, high = doubted + len(doubts), high + (worst > 1.04 * 5.0)
+        self.assertGreater(high, 0)
+        self.assertLess(doubted, 12)
+
+    def test_the_verdict_names_the_dead_point_before_what_it_leads_to(self):
+        for text in (SLIDE.replace("step: 1 ms", "accuracy: 1 um"), FOUR_BAR % (0.3, PLAY, SPEED, "A: 20 deg", "accuracy: 1 um")):
+            self.reason(text)
+            first, *_ = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
+            self.assertRegex(first["message"], r"^the mechanism comes to a dead point: (body|joint) '\w+' at t = [^;]+$")
 
     def test_ideal_joints_in_steps_of_every_kind(self):
         limit = math.degrees(math.acos((0.2**2 + 0.4**2 - 0.4**2) / (2 * 0.2 * 0.4)))

@@ -250,11 +250,11 @@ simulation: {end: 0.1 s, step: 1 ms}
             self.assertEqual(abs(-90 - sign * 15 - lower) > 10, moved[0]["far"])
 
     def test_two_positions_that_are_equally_near_are_both_named(self):
-        _, messages = self.start(TOGGLE)
-        message, = [m for m in messages if m["id"] == "ambiguous-start"]
-        self.assertIn("-75.0 deg", message["message"])
-        self.assertIn("-105.0 deg", message["message"])
-        self.assertEqual("warning", message["severity"])
+        for down in (270, -810, 990, -90):
+            start, messages = self.start(TOGGLE, "--set", "upper=%d deg" % down, "--set", "lower=%d deg" % down)
+            text, = [m["message"] for m in messages if (m["id"], m["severity"]) == ("ambiguous-start", "warning")]
+            self.assertIn("at %d.0 deg (taken) or at %d.0 deg" % (down + 15, down - 15), text)
+            self.assertAlmostEqual(down + 15, math.degrees(start["upper"]["angle"]), places=9)  # as the rows have it
         self.freeplay("validate", "m.yaml", "--strict", code=3)
 
     def test_a_motion_that_is_left_free_serves_the_given_poses(self):

@@ -296,5 +296,39 @@ TEST_P(ConstraintResidual, StaysSmallWithStepsOfTwoMicroseconds) {
 }
 INSTANTIATE_TEST_SUITE_P(Legs, ConstraintResidual, ::testing::Values(3, 4));
 
+/// Where a driver alone moves everything its work is the energy of motion, and what it is off by is the sum over the
+/// steps alone.
+TEST(DrivenCrank, MethodsOfOrderTwoBookTheWorkOfItsDriver) {
+  const std::string text =
+      "freeplay: 1\n"
+      "bodies:\n"
+      "  crank: {mass: 0.3, inertia: 1e-4, frames: {tip: [0.05, 0]}}\n"
+      "  coupler: {mass: 0.2, inertia: 2.5e-4, frames: {tip: [0.12, 0]}}\n"
+      "  slider: {mass: 0.1, inertia: 1e-4}\n"
+      "joints:\n"
+      "  main: {type: revolute, between: [ground, crank]}\n"
+      "  pin: {type: revolute, between: [crank/tip, coupler]}\n"
+      "  guide: {type: prismatic, between: [ground, slider]}\n"
+      "  wrist: {type: revolute, between: [coupler/tip, slider]}\n"
+      "drivers: {m: {joint: main, kind: velocity, value: 20}}\n"
+      "initial: {joints: {main: 0}}\n"
+      "simulation: {end: 2, accuracy: 1e-4, output: {interval: 0.01}}\n";
+  for (const char* integrator : {"bathe", "newmark", "hht", "generalized-alpha"}) {
+    for (const auto& [accuracy, most] : {std::pair{1e-4, 1.5e-4}, std::pair{1e-6, 3e-6}}) {
+      BuildOptions options;
+      options.integrator = integrator;
+      options.accuracy = accuracy;
+      const ModelRun run(text, options);
+      ASSERT_EQ(run.outcome().status, RunStatus::completed) << integrator << ": " << run.outcome().reason;
+      double largest = 0.0, moved = 0.0;
+      for (std::size_t row = 0; row < run.rows(); ++row) {
+        largest = std::max(largest, std::abs(run.at(row, "energy.residual")));
+        moved = std::max(moved, run.at(row, "energy.kinetic"));
+      }
+      EXPECT_LT(largest, most * moved / 0.18) << integrator << " " << accuracy;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::test

@@ -77,10 +77,38 @@ TEST(MotionKink, EveryEndOfARepeatedTableIsMet) {
 }
 
 TEST(MotionKink, AJumpOfThePositionEndsTheRunAndNamesTheDriver) {
-  const ModelRun run(cart("table: {points: [[0, 0], [0.2, 0.1]], interpolation: linear, outside: repeat}"));
-  EXPECT_EQ(run.outcome().status, RunStatus::failed);
-  EXPECT_EQ(run.outcome().exit_code, 4);
-  EXPECT_EQ(run.outcome().reason, "t = 0.2 s: driver 'motor': the prescribed position jumps; no motion follows it");
+  for (const std::string motion : {"table: {points: [[0, 0], [0.2, 0.1]], interpolation: linear, outside: repeat}",
+                                   "value: '1e-4*sign(t - 0.2)'"}) {
+    // Also steps of one size, to whose ends the jump comes or not.
+    for (const char* steps : {"accuracy: 1e-9", "step: 1e-3", "step: 0.7e-3"}) {
+      const ModelRun run(replaced(cart(motion), "accuracy: 1e-9", steps));
+      EXPECT_EQ(run.outcome().status, RunStatus::failed) << motion << " " << steps;
+      EXPECT_EQ(run.outcome().exit_code, 4);
+      EXPECT_EQ(run.outcome().reason, "t = 0.2 s: driver 'motor': the prescribed position jumps; no motion follows it");
+    }
+  }
+}
+
+// A table from 0 to 360 degrees that repeats turns a body that it drives on; between bodies of which one hangs free the
+// turns of the joint count.
+TEST(MotionKink, AJumpByAWholeTurnIsNoneOfADrivenBody) {
+  const std::string text =
+      "freeplay: 1\n"
+      "bodies: {swing: {mass: 1, inertia: 1}, arm: {mass: 2, inertia: 1, frames: {end: [0.1, 0]}}}\n"
+      "joints: {hang: {type: revolute, between: [ground, swing]}, pin: {type: revolute, between: [ground, arm]}}\n"
+      "drivers: {motor: {joint: pin, kind: angle, table: {points: [[0, 0], [0.2, 360 deg]], interpolation: linear, "
+      "outside: repeat}}}\n"
+      "initial: {joints: {hang: 0}, speeds: {hang: 0}}\n"
+      "simulation: {end: 1.05, accuracy: 1e-6, output: {interval: 0.05}}\n";
+  const double turn = 2.0 * std::acos(-1.0);
+  for (const char* steps : {"accuracy: 1e-6", "step: 1e-3", "step: 0.7e-3"}) {
+    const ModelRun run(replaced(text, "accuracy: 1e-6", steps));
+    ASSERT_EQ(run.outcome().status, RunStatus::completed) << steps << " " << run.outcome().reason;
+    EXPECT_NEAR(run.last("joint.pin.angle"), 5.25 * turn, 1e-9) << steps;
+    EXPECT_NEAR(run.last("joint.pin.speed"), 5.0 * turn, 1e-9) << steps;
+    const ModelRun other(replaced(replaced(text, "[ground, arm]", "[swing, arm]"), "accuracy: 1e-6", steps));
+    EXPECT_EQ(other.outcome().reason, "t = 0.2 s: driver 'motor': the prescribed position jumps; no motion follows it");
+  }
 }
 
 }  // namespace
