@@ -45,7 +45,8 @@ class StageHistory {
       return memory.part(used - size, size);
     };
     good_ = take(static_cast<std::size_t>(stages));
-    for (int i = 0; i < 3; ++i) past_[(i + static_cast<int>(last_)) % 3] = take(count());
+    int place = static_cast<int>(last_);
+    for (int i = 0; i < 3; ++i, place = place == 2 ? 0 : place + 1) past_[place] = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
     beside_ = take(a.size);

@@ -60,6 +60,8 @@ class EnergyAccount final : public Flows {
   void fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row) {
     fill_sums(e, channels, row, integral_, row_work_);
   }
+  /// joint_loss() alone. Returns their sum.
+  double find_losses(const Evaluation& e) { return find_losses(e, integral_); }
   /// The flows() integrals at the fraction s of a step of the length dt that begins at the end of the last one, from
   /// the powers there and at its end and the integrals at its end. False where the powers are too far from a straight
   /// line for a parabola to be as good as a step of the integrator.
@@ -127,6 +129,7 @@ class EnergyAccount final : public Flows {
             double row_work);
   void fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
                  double row_work);
+  double find_losses(const Evaluation& e, std::span<const double> integral);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
   double row_work_inside(double s, const Evaluation& e, std::span<const double> lambda) const {
     return row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda));

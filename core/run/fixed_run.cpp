@@ -18,7 +18,11 @@ long steps_between(double from, double to, double step) {
 }  // namespace
 
 FixedRun::FixedRun(const RunParts& parts, StepCorners& step_corners)
-    : parts_(parts), run_(parts.run), step_corners_(step_corners) {}
+    : parts_(parts), run_(parts.run), step_corners_(step_corners) {
+  for (int j = 0; j < run_.system.joints().count(); ++j) {
+    if (run_.system.layout().turn(j) >= 0) turning_.push_back(at(j));
+  }
+}
 
 // The way to the next output instant.
 bool FixedRun::begin_leg() {
@@ -59,7 +63,7 @@ bool FixedRun::step(double until) {
   for (;;) {
     const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * smallest;
     if (last) dt = leg_.goal - run_.accepted.t();
-    step_corners_.list(leg_.goal);
+    if (step_corners_.any()) step_corners_.list(leg_.goal);
     const double end = last ? leg_.goal : run_.accepted.t() + dt, corner = step_corners_.at(end);
     // The step that ends at a corner has the forces before it to its end.
     const bool to_corner = corner < unbounded;
@@ -94,8 +98,8 @@ bool FixedRun::step(double until) {
 // Of a joint whose turns are counted [rad/s].
 double FixedRun::fastest_turn() const {
   double fastest = 0.0;
-  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
-    const double rate = run_.system.layout().turn(j) < 0 ? 0.0 : std::abs(run_.e_accepted->coordinate_rate[at(j)]);
+  for (const std::size_t j : turning_) {
+    const double rate = std::abs(run_.e_accepted->coordinate_rate[j]);
     if (std::isfinite(rate)) fastest = std::max(fastest, rate);
   }
   return fastest;
@@ -108,7 +112,7 @@ bool FixedRun::accept(double corner) {
       parts_.corners.book_jump(kink);
   }
   parts_.motion_loads.note();
-  const bool has_energy = step_corners_.add_energy();
+  const bool has_energy = !step_corners_.all().empty() && step_corners_.add_energy();
   return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 

@@ -19,7 +19,12 @@ StepAcceptance::StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt
       growth_(growth),
       corners_(corners),
       step_corners_(step_corners),
-      flow_half_way_(at(run.energy.flows())) {}
+      flow_half_way_(at(run.energy.flows())) {
+  const Joints& joints = run.system.joints();
+  for (int j = 0; j < joints.count(); ++j) {
+    if (joints.layout(j).history > 0 || !joints.layout(j).events.empty()) may_lose_.push_back(at(j));
+  }
+}
 
 bool StepAcceptance::begin() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::start);
@@ -60,7 +65,7 @@ void StepAcceptance::add_energy() {
 
 bool StepAcceptance::add_history_losses() {
   const std::span<double> lost = run_.events.lost();
-  for (std::size_t j = 0; j < lost.size(); ++j) {
+  for (const std::size_t j : may_lose_) {
     if (lost[j] == 0.0) continue;
     const double loss = std::exchange(lost[j], 0.0);
     if (!std::isfinite(loss)) {

@@ -26,26 +26,27 @@ StepAttempt::StepAttempt(RunContext& run, RunFailure& failure)
 }
 
 bool StepAttempt::commit_history() {
-  Fault fault;
-  const Point end = point(run_.trial);
-  const Span<double> all_history(run_.trial.h());
-  const double* const lambda = run_.trial.lambda().data();
   for (const int j : with_history_) {
-    if (run_.evaluations.is_asleep(j)) continue;
-    const Slice h = run_.system.layout().history(j), rows = run_.system.layout().rows(j);
-    const Span<double> history = all_history.part(at(h.offset), at(h.size));
-    JointInput in = run_.system.joints().input(j, end, run_.e_trial);
-    in.dissipated = &run_.events.lost()[at(j)];
-    if (!run_.system.joints().handle(j).commit(in, {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
-        !keeps_finite({}, history, "commit", fault.message)) {
-      fault.kind = Fault::Kind::plugin;
-      fault.joint = j;
-      return failure_.fail_with(fault, run_.trial.t());
-    }
-    if (!run_.trial.intact()) return failure_.fail_beside(j);
+    if (!run_.evaluations.is_asleep(j) && !commit_history_of(j)) return false;
   }
   if (turns_are_due_) note_turns(run_.e_trial, run_.trial.h());
   return true;
+}
+
+bool StepAttempt::commit_history_of(int joint) {
+  Fault fault;
+  const Slice h = run_.system.layout().history(joint), rows = run_.system.layout().rows(joint);
+  const Span<double> history = Span<double>(run_.trial.h()).part(at(h.offset), at(h.size));
+  const double* const lambda = run_.trial.lambda().data();
+  JointInput in = run_.system.joints().input(joint, point(run_.trial), run_.e_trial);
+  in.dissipated = &run_.events.lost()[at(joint)];
+  if (!run_.system.joints().handle(joint).commit(in, {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
+      !keeps_finite({}, history, "commit", fault.message)) {
+    fault.kind = Fault::Kind::plugin;
+    fault.joint = joint;
+    return failure_.fail_with(fault, run_.trial.t());
+  }
+  return run_.trial.intact() || failure_.fail_beside(joint);
 }
 
 bool StepAttempt::start() {
@@ -63,28 +64,31 @@ bool StepAttempt::start() {
 
 bool StepAttempt::begin_steps(double dt, State& state) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
-  std::ranges::copy(run_.accepted.h(), state.h().begin());
-  const Point here{run_.accepted.t(), run_.accepted.q(), run_.accepted.v(), run_.accepted.z(), run_.accepted.h()};
+  const Point here = point(run_.accepted);
   // A step that the error chooses ends at events: there joints are asked for all but forces.
   if (!run_.sleeping.begin(run_.adaptive ? unbounded : dt, here, run_.e_accepted, run_.e_trial->fault)) {
     return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
   }
   for (const int j : with_history_) {
-    if (run_.evaluations.is_asleep(j)) continue;
-    const Slice h = run_.system.layout().history(j);
-    MarkerAccelerations accelerations;
-    run_.system.joints().accelerations(j, run_.e_accepted, run_.accepted.a(), accelerations);
-    const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
-    if (!run_.system.joints().handle(j).begin_step(run_.system.joints().input(j, here, run_.e_accepted), accelerations,
-                                                   dt, history, run_.e_trial->fault.message) ||
-        !keeps_finite({}, history, "begin_step", run_.e_trial->fault.message)) {
-      run_.e_trial->fault.kind = Fault::Kind::plugin;
-      run_.e_trial->fault.joint = j;
-      return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
-    }
-    if (!state.intact()) return failure_.fail_beside(j);
+    if (!run_.evaluations.is_asleep(j) && !begin_step_of(j, dt, here, state)) return false;
   }
   return true;
+}
+
+bool StepAttempt::begin_step_of(int joint, double dt, const Point& start, State& state) {
+  const Slice h = run_.system.layout().history(joint);
+  MarkerAccelerations accelerations;
+  run_.system.joints().accelerations(joint, run_.e_accepted, run_.accepted.a(), accelerations);
+  const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
+  Fault& fault = run_.e_trial->fault;
+  if (!run_.system.joints().handle(joint).begin_step(run_.system.joints().input(joint, start, run_.e_accepted),
+                                                     accelerations, dt, history, fault.message) ||
+      !keeps_finite({}, history, "begin_step", fault.message)) {
+    fault.kind = Fault::Kind::plugin;
+    fault.joint = joint;
+    return failure_.fail_with(fault, run_.accepted.t());
+  }
+  return state.intact() || failure_.fail_beside(joint);
 }
 
 // What is left out in fixed steps is completed for a row.

@@ -110,7 +110,7 @@ inline bool Forces::ask(const JointRecord& joint, const Point& point, bool deriv
 template <class Bodies>
 bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) const {
   const Profile::Timer timer(e.profile(), Phase::joints);
-  std::ranges::copy(inertia_.weight(), e.force.begin());
+  std::copy_n(inertia_.weight().data(), inertia_.weight().size(), e.force.data());
   e.acting = 0;
   JointForces out;
   bool clean = false;  // zeroed for the first that is asked, and after those that wrote into it
