@@ -40,6 +40,17 @@ bool FixedRun::begin_leg() {
   return true;
 }
 
+// A blow inside the step does work.
+[[gnu::always_inline]] inline bool FixedRun::accept(double corner) {
+  for (const auto& [kink, of_motion] : step_corners_.all()) {
+    if (of_motion && kink <= run_.trial.t() && !step_corners_.is_last(kink) && parts_.corners.note_jumps(kink))
+      parts_.corners.book_jump(kink);
+  }
+  parts_.motion_loads.note();
+  const bool has_energy = !step_corners_.all().empty() && step_corners_.add_energy();
+  return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
+}
+
 // One accepted step. An attempt that does not converge is made again in half its length, and the rest of the step of
 // full size follows in steps as short. A step that would go over `until` ends there, and others of full size follow.
 bool FixedRun::step(double until) {
@@ -103,17 +114,6 @@ double FixedRun::fastest_turn() const {
     if (std::isfinite(rate)) fastest = std::max(fastest, rate);
   }
   return fastest;
-}
-
-// A blow inside the step does work.
-bool FixedRun::accept(double corner) {
-  for (const auto& [kink, of_motion] : step_corners_.all()) {
-    if (of_motion && kink <= run_.trial.t() && !step_corners_.is_last(kink) && parts_.corners.note_jumps(kink))
-      parts_.corners.book_jump(kink);
-  }
-  parts_.motion_loads.note();
-  const bool has_energy = !step_corners_.all().empty() && step_corners_.add_energy();
-  return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 
 bool FixedRun::advance(const RunHooks& hooks, const RunGoal& goal) {

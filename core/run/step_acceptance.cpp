@@ -47,7 +47,7 @@ bool StepAcceptance::begin() {
 
 // Where neither the integrator carries the flows nor the steps before show how they go, forces are looked at once more
 // in the middle of the step.
-void StepAcceptance::add_energy() {
+[[gnu::always_inline]] inline void StepAcceptance::add_energy() {
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.flows > 0 || run_.energy.flows() == 0) {
     return run_.energy.take(dt, run_.e_trial, run_.trial.lambda(),
@@ -63,7 +63,7 @@ void StepAcceptance::add_energy() {
   run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());
 }
 
-bool StepAcceptance::add_history_losses() {
+[[gnu::always_inline]] inline bool StepAcceptance::add_history_losses() {
   const std::span<double> lost = run_.events.lost();
   for (const std::size_t j : may_lose_) {
     if (lost[j] == 0.0) continue;
@@ -80,7 +80,7 @@ bool StepAcceptance::add_history_losses() {
   return true;
 }
 
-bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
+[[gnu::always_inline]] inline bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
   const auto mobility = [](void* self, int joint, double* out) {
     auto& run = *static_cast<RunContext*>(self);
     const bool whole = run.system.joints().layout(joint).wants_whole_mobility != 0;
@@ -98,7 +98,7 @@ bool StepAcceptance::apply_events(const StepEvents::Passage& located, double lat
   return failure_.fail_with(fault, run_.trial.t());
 }
 
-bool StepAcceptance::go_on_from(bool changed, const End& end) {
+[[gnu::always_inline]] inline bool StepAcceptance::go_on_from(bool changed, const End& end) {
   if ((!changed || attempt_.restart()) && (!(end.corner < unbounded) || step_corners_.pass(end.corner)) &&
       (!(end.kink < unbounded) || corners_.pass_kink(end.kink))) {
     return true;

@@ -118,6 +118,23 @@ void StepAttempt::note_turns(const Evaluation& e, std::span<double> history) {
   for (std::size_t b = 0; b < angle_then_.size(); ++b) angle_then_[b] = e.q[3 * b + 2];
 }
 
+/// What an integrator that says that it converged must have left.
+[[gnu::always_inline]] inline bool StepAttempt::check_step(double dt) {
+  const double expected = run_.accepted.t() + dt;
+  if (!(std::abs(run_.trial.t() - expected) <= 1e-9 * dt + 4.0 * rounding * std::abs(expected))) {
+    return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
+                                        run_.accepted.t(), integrator_words(run_.model), expected, run_.trial.t()));
+  }
+  if (is_finite(Span<const double>(run_.trial.before_history()))) return true;
+  if (failure_.all_built_in()) {
+    run_.left_bounds = true;  // a step that was too long for the forces: a shorter one may do
+    return true;
+  }
+  return failure_.fail(
+      5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
+                     run_.accepted.t(), integrator_words(run_.model)));
+}
+
 bool StepAttempt::make(double dt, bool& converged) {
   converged = false;
   run_.plugin_fault.kind = Fault::Kind::none;
@@ -167,23 +184,6 @@ bool StepAttempt::make(double dt, bool& converged) {
   if (!check_step(dt)) return false;
   converged = !run_.left_bounds;
   return true;
-}
-
-/// What an integrator that says that it converged must have left.
-bool StepAttempt::check_step(double dt) {
-  const double expected = run_.accepted.t() + dt;
-  if (!(std::abs(run_.trial.t() - expected) <= 1e-9 * dt + 4.0 * rounding * std::abs(expected))) {
-    return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
-                                        run_.accepted.t(), integrator_words(run_.model), expected, run_.trial.t()));
-  }
-  if (is_finite(Span<const double>(run_.trial.before_history()))) return true;
-  if (failure_.all_built_in()) {
-    run_.left_bounds = true;  // a step that was too long for the forces: a shorter one may do
-    return true;
-  }
-  return failure_.fail(
-      5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
-                     run_.accepted.t(), integrator_words(run_.model)));
 }
 
 // An event changes history or internal variables, and with them what acts.
