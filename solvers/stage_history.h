@@ -45,7 +45,8 @@ class StageHistory {
       return memory.part(used - size, size);
     };
     good_ = take(static_cast<std::size_t>(stages));
-    for (int i = 0; i < 3; ++i) past_[(i + static_cast<int>(last_)) % 3] = take(count());
+    int place = static_cast<int>(last_);
+    for (int i = 0; i < 3; ++i, place = place == 2 ? 0 : place + 1) past_[place] = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
     guess_ = take(static_cast<std::size_t>(stages) * count());
     beside_ = take(a.size);
@@ -162,9 +163,8 @@ class StageHistory {
   void keep_start() {
     count_ = std::min(steps_ + 1.0, 3.0);
     last_ = last_ < 2.0 ? last_ + 1.0 : 0.0;
-    const Span<double> past = past_[2], past_lambda = past.part(a_.size, lambda_.size);
-    std::ranges::copy(a_, past.begin());
-    std::ranges::copy(lambda_, past_lambda.begin());
+    std::copy_n(a_.data, a_.size, past_[2].data);
+    std::copy_n(lambda_.data, lambda_.size, past_[2].data + a_.size);
   }
 
   std::size_t count() const { return a_.size + lambda_.size; }

@@ -235,19 +235,28 @@ void EnergyAccount::fill(const Evaluation& e, const Channels& channels, std::spa
   channels.fill_formulas(row);
 }
 
+double EnergyAccount::find_losses(const Evaluation& e, std::span<const double> integral) {
+  const std::span<const ForceBlock> blocks = system_.forces().blocks();
+  const double* given = integral.last(blocks.size()).data();
+  double lost = 0.0;
+  for (const ForceBlock& block : blocks) {
+    const std::size_t j = at(block.joint);
+    double& loss = joint_loss_[j];
+    loss = -*given++;
+    if (std::isnan(e.potential_rate[j])) loss -= e.potential[j] - stored_start_[j];
+    lost += loss;
+  }
+  return lost;
+}
+
 void EnergyAccount::fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row,
                               std::span<const double> integral, double row_work) {
   std::size_t flow = 0;
-  double work = row_work, lost = 0.0;
+  double work = row_work;
   for (double& driver : driver_work_) work += driver = integral[flow++];
   const std::size_t first_force = flow;
   for (std::size_t f = 0; f < system_.model().forces.size(); ++f) work += integral[flow++];
-  for (const ForceBlock& block : system_.forces().blocks()) {
-    const std::size_t j = at(block.joint);
-    joint_loss_[j] = -integral[flow++];
-    if (std::isnan(e.potential_rate[j])) joint_loss_[j] -= e.potential[j] - stored_start_[j];
-    lost += joint_loss_[j];
-  }
+  const double lost = find_losses(e, integral);
   for (std::size_t i = 0; i < force_work_.size(); ++i) {
     const ForceElement& element = system_.model().force_elements[i];
     if (element.joint < 0) {

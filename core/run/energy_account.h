@@ -52,13 +52,13 @@ class EnergyAccount final : public Flows {
     flow(e, lambda, power_end_);
     take(dt, e, lambda, power_end_, integral_inside_);
   }
-  /// Fills dissipated, work and residual of a row that holds the observed columns, at the end of the last step.
-  void fill(const Evaluation& e, const Channels& channels, std::span<double> row) {
-    fill(e, channels, row, integral_, row_work_);
-  }
-  /// The same of those three columns alone.
-  void fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row) {
-    fill_sums(e, channels, row, integral_, row_work_);
+  /// What of the account is wanted: all of its columns; dissipated, work and residual alone; joint_loss() alone.
+  enum class Part { all, sums, losses };
+  /// Fills it into a row that holds the observed columns, at the end of the last step.
+  void fill(const Evaluation& e, const Channels& channels, std::span<double> row, Part part = Part::all) {
+    if (part == Part::all) return fill(e, channels, row, integral_, row_work_);
+    if (part == Part::sums) return fill_sums(e, channels, row, integral_, row_work_);
+    find_losses(e, integral_);
   }
   /// The flows() integrals at the fraction s of a step of the length dt that begins at the end of the last one, from
   /// the powers there and at its end and the integrals at its end. False where the powers are too far from a straight
@@ -127,6 +127,8 @@ class EnergyAccount final : public Flows {
             double row_work);
   void fill_sums(const Evaluation& e, const Channels& channels, std::span<double> row, std::span<const double> integral,
                  double row_work);
+  /// Returns their sum.
+  double find_losses(const Evaluation& e, std::span<const double> integral);
   double row_power(const Evaluation& e, std::span<const double> lambda) const;
   double row_work_inside(double s, const Evaluation& e, std::span<const double> lambda) const {
     return row_work_before_ + 0.5 * s * dt_ * (row_power_before_ + row_power(e, lambda));

@@ -151,6 +151,7 @@ bool EventPursuit::end_inside(const StepEvents::Passage& hunted, double dt, int 
   for (int look = 0; look < early_hunts; ++look) {
     motion.at(at_event / whole, run_.between);
     std::ranges::copy(run_.between.a(), defect_.begin());
+    std::ranges::copy(run_.accepted.h(), run_.between.h().begin());
     if (!attempt_.begin_steps(at_event, run_.between) || !inside_.settle_between()) return false;
     if (!(defect_inside(at_event) <= largest_defect)) return false;
     Fault fault;

@@ -11,11 +11,7 @@ constexpr double carries_energy = 1e-2;  // of the largest mean kinetic energy o
 }
 
 FastMotion::FastMotion(const System& system)
-    : system_(system),
-      bodies_(at(system.layout().free_bodies())),
-      width_(at(system.layout().body_velocities())),
-      counts_(parts, 0),
-      sums_(parts * bodies_) {}
+    : system_(system), bodies_(at(system.layout().free_bodies())), counts_(parts, 0), sums_(parts * bodies_) {}
 
 void FastMotion::add(double t, double dt, std::span<const double> start, std::span<const double> end,
                      std::span<const double> v) {
@@ -24,19 +20,22 @@ void FastMotion::add(double t, double dt, std::span<const double> start, std::sp
   const auto part = static_cast<std::size_t>(std::clamp(passed, 0.0, static_cast<double>(parts - 1)));
   const std::span<const double> mass = system_.inertia().mass();
   ++counts_[part];
-  for (std::size_t b = 0; b < bodies_; ++b) {
-    Sums& sums = sums_[part * bodies_ + b];
-    double kinetic = 0.0, change = 0.0, turn = 0.0;
-    for (std::size_t i = width_ * b; i < width_ * (b + 1); ++i) {
-      const double to = end[i], by = to - start[i];
-      kinetic += mass[i] * v[i] * v[i];
-      change += mass[i] * to * to;
-      turn += mass[i] * by * by;
+  Sums* sums = &sums_[part * bodies_];
+  by_space(system_.model().space, [&]<class Bodies>(Bodies) {
+    const double *m = mass.data(), *from = start.data(), *to = end.data(), *speed = v.data();
+    for (std::size_t b = 0; b < bodies_; ++b, ++sums) {
+      double kinetic = 0.0, change = 0.0, turn = 0.0;
+      for (int i = 0; i < Bodies::velocities; ++i, ++m, ++from, ++to, ++speed) {
+        const double by = *to - *from;
+        kinetic += *m * *speed * *speed;
+        change += *m * *to * *to;
+        turn += *m * by * by;
+      }
+      sums->kinetic += kinetic;
+      sums->change += dt * dt * change;
+      sums->turn += dt * dt * turn;
     }
-    sums.kinetic += kinetic;
-    sums.change += dt * dt * change;
-    sums.turn += dt * dt * turn;
-  }
+  });
 }
 
 FastMotion::Fewest FastMotion::fewest() const {

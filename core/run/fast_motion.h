@@ -44,7 +44,7 @@ class FastMotion {
   };
 
   const System& system_;
-  std::size_t bodies_, width_;
+  std::size_t bodies_;
   std::vector<long> counts_;  ///< of steps, by part
   std::vector<Sums> sums_;    ///< by part and free body
 };

@@ -18,7 +18,11 @@ long steps_between(double from, double to, double step) {
 }  // namespace
 
 FixedRun::FixedRun(const RunParts& parts, StepCorners& step_corners)
-    : parts_(parts), run_(parts.run), step_corners_(step_corners) {}
+    : parts_(parts), run_(parts.run), step_corners_(step_corners) {
+  for (int j = 0; j < run_.system.joints().count(); ++j) {
+    if (run_.system.layout().turn(j) >= 0) turning_.push_back(at(j));
+  }
+}
 
 // The way to the next output instant.
 bool FixedRun::begin_leg() {
@@ -34,6 +38,17 @@ bool FixedRun::begin_leg() {
           .count = steps_between(from, target, run_.settings.step),
           .steps_before = run_.outcome.steps};
   return true;
+}
+
+// A blow inside the step does work.
+[[gnu::always_inline]] inline bool FixedRun::accept(double corner) {
+  for (const auto& [kink, of_motion] : step_corners_.all()) {
+    if (of_motion && kink <= run_.trial.t() && !step_corners_.is_last(kink) && parts_.corners.note_jumps(kink))
+      parts_.corners.book_jump(kink);
+  }
+  parts_.motion_loads.note();
+  const bool has_energy = !step_corners_.all().empty() && step_corners_.add_energy();
+  return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 
 // One accepted step. An attempt that does not converge is made again in half its length, and the rest of the step of
@@ -59,7 +74,7 @@ bool FixedRun::step(double until) {
   for (;;) {
     const bool last = run_.accepted.t() + dt >= leg_.goal - 0.5 * smallest;
     if (last) dt = leg_.goal - run_.accepted.t();
-    step_corners_.list(leg_.goal);
+    if (step_corners_.any()) step_corners_.list(leg_.goal);
     const double end = last ? leg_.goal : run_.accepted.t() + dt, corner = step_corners_.at(end);
     if (meets_jump(end)) return false;
     // The step that ends at a corner has the forces before it to its end.
@@ -103,22 +118,11 @@ bool FixedRun::meets_jump(double end) {
 // Of a joint whose turns are counted [rad/s].
 double FixedRun::fastest_turn() const {
   double fastest = 0.0;
-  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
-    const double rate = run_.system.layout().turn(j) < 0 ? 0.0 : std::abs(run_.e_accepted->coordinate_rate[at(j)]);
+  for (const std::size_t j : turning_) {
+    const double rate = std::abs(run_.e_accepted->coordinate_rate[j]);
     if (std::isfinite(rate)) fastest = std::max(fastest, rate);
   }
   return fastest;
-}
-
-// A blow inside the step does work.
-bool FixedRun::accept(double corner) {
-  for (const auto& [kink, of_motion] : step_corners_.all()) {
-    if (of_motion && kink <= run_.trial.t() && !step_corners_.is_last(kink) && parts_.corners.note_jumps(kink))
-      parts_.corners.book_jump(kink);
-  }
-  parts_.motion_loads.note();
-  const bool has_energy = step_corners_.add_energy();
-  return parts_.acceptance.accept({.corner = corner, .has_energy = has_energy});
 }
 
 bool FixedRun::advance(const RunHooks& hooks, const RunGoal& goal) {

@@ -1,6 +1,9 @@
 // FixedRun: a run in steps of one size.
 #pragma once
 
+#include <cstddef>
+#include <vector>
+
 #include "run/goal.h"
 #include "run/parts.h"
 #include "run/step_corners.h"
@@ -42,6 +45,7 @@ class FixedRun {
   const RunParts parts_;
   RunContext& run_;
   StepCorners& step_corners_;
+  std::vector<std::size_t> turning_;  // joints whose turns are counted
   Leg leg_;
 };
 

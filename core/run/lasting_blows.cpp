@@ -23,7 +23,8 @@ LastingBlows::LastingBlows(const System& system) {
 void LastingBlows::add(const Evaluation& e) {
   for (OfJoint& one : joints_) {
     const double* wrench = &e.wrench[12 * static_cast<std::size_t>(one.joint) + 6];
-    const double force = std::hypot(wrench[0], wrench[1], wrench[2]);
+    const bool rests = wrench[0] == 0.0 && wrench[1] == 0.0 && wrench[2] == 0.0;
+    const double force = rests ? 0.0 : std::hypot(wrench[0], wrench[1], wrench[2]);
     one.largest = std::max(one.largest, force);
     Phase phase = static_cast<Phase>(static_cast<int>(one.phase));
     if (!(force > 0.0)) {

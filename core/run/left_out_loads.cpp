@@ -34,27 +34,30 @@ LeftOutLoads::LeftOutLoads(const System& system, const Channels& channels) : sys
   }
 }
 
+template <class Bodies>
+double LeftOutLoads::force_of_gear(int joint, const Evaluation& e, std::span<const double> lambda) const {
+  double wrench[6];
+  system_.constraints().reaction(joint, e, lambda, wrench);
+  for (const Gear& gear : system_.model().gears) {
+    if (!has_teeth(system_.model().joints[at(gear.joint)])) continue;
+    if (joint != gear.joint && joint != gear.first && joint != gear.second) continue;
+    for (const ToothWrench& one : tooth_wrenches(system_, gear, e, lambda)) {
+      if (one.joint == joint) one.add_to(wrench, 5);
+    }
+  }
+  return amount<Bodies>(wrench);
+}
+
 // As Constraints::reaction() sums it up.
 template <class Bodies>
-double LeftOutLoads::force(int joint, const Evaluation& e, std::span<const double> lambda) const {
+inline double LeftOutLoads::force(int joint, const Evaluation& e, std::span<const double> lambda) const {
   const Rows& rows = rows_[at(joint)];
-  if (rows.of_gear) {
-    double wrench[6];
-    system_.constraints().reaction(joint, e, lambda, wrench);
-    for (const Gear& gear : system_.model().gears) {
-      if (!has_teeth(system_.model().joints[at(gear.joint)])) continue;
-      if (joint != gear.joint && joint != gear.first && joint != gear.second) continue;
-      for (const ToothWrench& one : tooth_wrenches(system_, gear, e, lambda)) {
-        if (one.joint == joint) one.add_to(wrench, 5);
-      }
-    }
-    return amount<Bodies>(wrench);
-  }
+  if (rows.of_gear) return force_of_gear<Bodies>(joint, e, lambda);
   double sum[3] = {};
   if (rows.offset >= 0) {
-    const double* entries = &e.jacobian[at(rows.offset)];
+    const double *entries = &e.jacobian[at(rows.offset)], *multiplier = &lambda[at(rows.first)];
     for (int r = 0; r < rows.count; ++r, entries += Bodies::velocities) {
-      for (int c = 0; c < 3; ++c) sum[c] -= entries[c] * lambda[at(rows.first + r)];
+      for (int c = 0; c < 3; ++c) sum[c] -= entries[c] * multiplier[r];
     }
   }
   const double* applied = &e.wrench[12 * at(joint) + 6];

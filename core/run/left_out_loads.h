@@ -28,6 +28,8 @@ class LeftOutLoads {
   template <class Bodies>
   double force(int joint, const Evaluation& e, std::span<const double> lambda) const;
   template <class Bodies>
+  [[gnu::noinline]] double force_of_gear(int joint, const Evaluation& e, std::span<const double> lambda) const;
+  template <class Bodies>
   void see_in(const State& state, const Evaluation& e, LargestValues& largest) const;
 
   const System& system_;

@@ -11,6 +11,7 @@
 #include "component/joint_answer.h"
 #include "model/gear_teeth.h"
 #include "run/energy_account.h"
+#include "system/finite.h"
 #include "system/path_row.h"
 #include "system/tooth_forces.h"
 
@@ -125,8 +126,9 @@ bool Observer::observe_own(int index, const Point& point, const Evaluation& e, s
   const Span<double> values(row.data() + columns.own, own);
   if (system_.joints().handle(index).observe(system_.joints().input(index, point, e),
                                              {lambda.data() + rows.offset, at(rows.size)}, values, fault.message)) {
+    if (is_finite(values)) return true;
     const std::size_t wild = first_wild(values);
-    if (wild == own) return true;
+    if (wild == own) return true;  // their sum was too large
     const char* name = system_.joints().layout(index).channels[wild].name;
     std::snprintf(fault.message.text, sizeof fault.message.text, "its channel '%s' is not a finite number", name);
   }

@@ -81,19 +81,19 @@ bool Recorder::know_loads() {
   const bool row_is_due = !(run_.accepted.t() < row_time(next_row_ - 1));
   if (run_.adaptive || feed_.active() || contact_rows_.active() || row_is_due) return know_row();
   observer_.observe_loads(run_.accepted, run_.e_accepted, row_);
-  return loads_are_known_ = know_contacts();
+  if (!know_contacts()) return false;
+  run_.energy.fill(run_.e_accepted, run_.channels, row_, EnergyAccount::Part::sums);
+  return loads_are_known_ = true;
 }
 
 bool Recorder::know_contacts() {
-  const Point here = point(run_.accepted);
   const LargestValues& largest = statistics_.largest();
   Fault fault;
   for (const int j : touching_) {
     if (run_.evaluations.is_asleep(j) && largest.before()[largest.places().penetration(j)] >= 0.0) continue;
-    if (!observer_.observe_own(j, here, run_.e_accepted, run_.accepted.lambda(), row_, fault))
+    if (!observer_.observe_own(j, point(run_.accepted), run_.e_accepted, run_.accepted.lambda(), row_, fault))
       return failure_.fail_with(fault, run_.accepted.t());
   }
-  run_.energy.fill_sums(run_.e_accepted, run_.channels, row_);
   return contacts_are_known_ = true;
 }
 
@@ -116,6 +116,7 @@ bool Recorder::record_step() {
   if (!counts && !noise && !feed_.active()) return true;
   if (!counts && is_left_out()) {
     if (!know_contacts()) return false;
+    run_.energy.fill(run_.e_accepted, run_.channels, row_, EnergyAccount::Part::losses);
     LargestValues& largest = statistics_.largest();
     left_out_.see(run_.accepted, run_.e_accepted, largest);
     for (const int j : touching_) left_out_.see_contact(j, row_, largest);

@@ -23,7 +23,12 @@ StepAcceptance::StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt
       corners_(corners),
       step_corners_(step_corners),
       flow_half_way_(at(run.energy.flows())),
-      flow_end_(flow_half_way_.size()) {}
+      flow_end_(flow_half_way_.size()) {
+  const Joints& joints = run.system.joints();
+  for (int j = 0; j < joints.count(); ++j) {
+    if (joints.layout(j).history > 0 || !joints.layout(j).events.empty()) may_lose_.push_back(at(j));
+  }
+}
 
 bool StepAcceptance::begin() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::start);
@@ -46,7 +51,7 @@ bool StepAcceptance::begin() {
 
 // Where neither the integrator carries the flows nor the steps before show how they go, forces are looked at once more
 // in the middle of the step.
-void StepAcceptance::add_energy() {
+[[gnu::always_inline]] inline void StepAcceptance::add_energy() {
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.flows > 0 || run_.energy.flows() == 0) {
     return run_.energy.take(dt, run_.e_trial, run_.trial.lambda(),
@@ -82,9 +87,9 @@ bool StepAcceptance::drivers_change(double dt) {
   return change * dt > noticed_change * run_.energy.exchanged();
 }
 
-bool StepAcceptance::add_history_losses() {
+[[gnu::always_inline]] inline bool StepAcceptance::add_history_losses() {
   const std::span<double> lost = run_.events.lost();
-  for (std::size_t j = 0; j < lost.size(); ++j) {
+  for (const std::size_t j : may_lose_) {
     if (lost[j] == 0.0) continue;
     const double loss = std::exchange(lost[j], 0.0);
     if (!std::isfinite(loss)) {
@@ -99,7 +104,7 @@ bool StepAcceptance::add_history_losses() {
   return true;
 }
 
-bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
+[[gnu::always_inline]] inline bool StepAcceptance::apply_events(const StepEvents::Passage& located, double late) {
   const auto mobility = [](void* self, int joint, double* out) {
     auto& run = *static_cast<RunContext*>(self);
     const bool whole = run.system.joints().layout(joint).wants_whole_mobility != 0;
@@ -117,7 +122,7 @@ bool StepAcceptance::apply_events(const StepEvents::Passage& located, double lat
   return failure_.fail_with(fault, run_.trial.t());
 }
 
-bool StepAcceptance::go_on_from(bool changed, const End& end) {
+[[gnu::always_inline]] inline bool StepAcceptance::go_on_from(bool changed, const End& end) {
   if ((!changed || attempt_.restart()) && (!(end.corner < unbounded) || step_corners_.pass(end.corner)) &&
       (!(end.kink < unbounded) || corners_.pass_kink(end.kink))) {
     return true;

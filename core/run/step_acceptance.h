@@ -49,6 +49,7 @@ class StepAcceptance {
   Corners& corners_;
   StepCorners& step_corners_;
   std::vector<double> flow_half_way_, flow_end_;
+  std::vector<std::size_t> may_lose_;  // joints that are handed JointInput::dissipated
 };
 
 }  // namespace freeplay

@@ -26,26 +26,27 @@ StepAttempt::StepAttempt(RunContext& run, RunFailure& failure)
 }
 
 bool StepAttempt::commit_history() {
-  Fault fault;
-  const Point end = point(run_.trial);
-  const Span<double> all_history(run_.trial.h());
-  const double* const lambda = run_.trial.lambda().data();
   for (const int j : with_history_) {
-    if (run_.evaluations.is_asleep(j)) continue;
-    const Slice h = run_.system.layout().history(j), rows = run_.system.layout().rows(j);
-    const Span<double> history = all_history.part(at(h.offset), at(h.size));
-    JointInput in = run_.system.joints().input(j, end, run_.e_trial);
-    in.dissipated = &run_.events.lost()[at(j)];
-    if (!run_.system.joints().handle(j).commit(in, {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
-        !keeps_finite({}, history, "commit", fault.message)) {
-      fault.kind = Fault::Kind::plugin;
-      fault.joint = j;
-      return failure_.fail_with(fault, run_.trial.t());
-    }
-    if (!run_.trial.intact()) return failure_.fail_beside(j);
+    if (!run_.evaluations.is_asleep(j) && !commit_history_of(j)) return false;
   }
   if (turns_are_due_) note_turns(run_.e_trial, run_.trial.h());
   return true;
+}
+
+bool StepAttempt::commit_history_of(int joint) {
+  Fault fault;
+  const Slice h = run_.system.layout().history(joint), rows = run_.system.layout().rows(joint);
+  const Span<double> history = Span<double>(run_.trial.h()).part(at(h.offset), at(h.size));
+  const double* const lambda = run_.trial.lambda().data();
+  JointInput in = run_.system.joints().input(joint, point(run_.trial), run_.e_trial);
+  in.dissipated = &run_.events.lost()[at(joint)];
+  if (!run_.system.joints().handle(joint).commit(in, {lambda + rows.offset, at(rows.size)}, history, fault.message) ||
+      !keeps_finite({}, history, "commit", fault.message)) {
+    fault.kind = Fault::Kind::plugin;
+    fault.joint = joint;
+    return failure_.fail_with(fault, run_.trial.t());
+  }
+  return run_.trial.intact() || failure_.fail_beside(joint);
 }
 
 bool StepAttempt::start() {
@@ -63,28 +64,31 @@ bool StepAttempt::start() {
 
 bool StepAttempt::begin_steps(double dt, State& state) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::joints);
-  std::ranges::copy(run_.accepted.h(), state.h().begin());
-  const Point here{run_.accepted.t(), run_.accepted.q(), run_.accepted.v(), run_.accepted.z(), run_.accepted.h()};
+  const Point here = point(run_.accepted);
   // A step that the error chooses ends at events: there joints are asked for all but forces.
   if (!run_.sleeping.begin(run_.adaptive ? unbounded : dt, here, run_.e_accepted, run_.e_trial->fault)) {
     return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
   }
   for (const int j : with_history_) {
-    if (run_.evaluations.is_asleep(j)) continue;
-    const Slice h = run_.system.layout().history(j);
-    MarkerAccelerations accelerations;
-    run_.system.joints().accelerations(j, run_.e_accepted, run_.accepted.a(), accelerations);
-    const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
-    if (!run_.system.joints().handle(j).begin_step(run_.system.joints().input(j, here, run_.e_accepted), accelerations,
-                                                   dt, history, run_.e_trial->fault.message) ||
-        !keeps_finite({}, history, "begin_step", run_.e_trial->fault.message)) {
-      run_.e_trial->fault.kind = Fault::Kind::plugin;
-      run_.e_trial->fault.joint = j;
-      return failure_.fail_with(run_.e_trial->fault, run_.accepted.t());
-    }
-    if (!state.intact()) return failure_.fail_beside(j);
+    if (!run_.evaluations.is_asleep(j) && !begin_step_of(j, dt, here, state)) return false;
   }
   return true;
+}
+
+bool StepAttempt::begin_step_of(int joint, double dt, const Point& start, State& state) {
+  const Slice h = run_.system.layout().history(joint);
+  MarkerAccelerations accelerations;
+  run_.system.joints().accelerations(joint, run_.e_accepted, run_.accepted.a(), accelerations);
+  const Span<double> history = Span<double>(state.h()).part(at(h.offset), at(h.size));
+  Fault& fault = run_.e_trial->fault;
+  if (!run_.system.joints().handle(joint).begin_step(run_.system.joints().input(joint, start, run_.e_accepted),
+                                                     accelerations, dt, history, fault.message) ||
+      !keeps_finite({}, history, "begin_step", fault.message)) {
+    fault.kind = Fault::Kind::plugin;
+    fault.joint = joint;
+    return failure_.fail_with(fault, run_.accepted.t());
+  }
+  return state.intact() || failure_.fail_beside(joint);
 }
 
 // What is left out in fixed steps is completed for a row.
@@ -112,6 +116,23 @@ bool StepAttempt::have_turned(const Evaluation& e) const {
 void StepAttempt::note_turns(const Evaluation& e, std::span<double> history) {
   for (const auto [turn, joint] : turns_) history[turn] = e.coordinate[joint];
   for (std::size_t b = 0; b < angle_then_.size(); ++b) angle_then_[b] = e.q[3 * b + 2];
+}
+
+/// What an integrator that says that it converged must have left.
+[[gnu::always_inline]] inline bool StepAttempt::check_step(double dt) {
+  const double expected = run_.accepted.t() + dt;
+  if (!(std::abs(run_.trial.t() - expected) <= 1e-9 * dt + 4.0 * rounding * std::abs(expected))) {
+    return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
+                                        run_.accepted.t(), integrator_words(run_.model), expected, run_.trial.t()));
+  }
+  if (is_finite(Span<const double>(run_.trial.before_history()))) return true;
+  if (failure_.all_built_in()) {
+    run_.left_bounds = true;  // a step that was too long for the forces: a shorter one may do
+    return true;
+  }
+  return failure_.fail(
+      5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
+                     run_.accepted.t(), integrator_words(run_.model)));
 }
 
 bool StepAttempt::make(double dt, bool& converged) {
@@ -163,23 +184,6 @@ bool StepAttempt::make(double dt, bool& converged) {
   if (!check_step(dt)) return false;
   converged = !run_.left_bounds;
   return true;
-}
-
-/// What an integrator that says that it converged must have left.
-bool StepAttempt::check_step(double dt) {
-  const double expected = run_.accepted.t() + dt;
-  if (!(std::abs(run_.trial.t() - expected) <= 1e-9 * dt + 4.0 * rounding * std::abs(expected))) {
-    return failure_.fail(5, fmt::format("t = {:.9g} s: {} failed: a step to {:.9g} s ends at {:.9g} s [plugin-failed]",
-                                        run_.accepted.t(), integrator_words(run_.model), expected, run_.trial.t()));
-  }
-  if (is_finite(Span<const double>(run_.trial.before_history()))) return true;
-  if (failure_.all_built_in()) {
-    run_.left_bounds = true;  // a step that was too long for the forces: a shorter one may do
-    return true;
-  }
-  return failure_.fail(
-      5, fmt::format("t = {:.9g} s: {} failed: it left a state that is not a finite number [plugin-failed]",
-                     run_.accepted.t(), integrator_words(run_.model)));
 }
 
 // An event changes history or internal variables, and with them what acts.

@@ -15,7 +15,8 @@ class StepAttempt {
   /// Tries a step of the length dt from the accepted state; the trial state is its end. `converged`: it may stand, as
   /// far as the integrator knows.
   bool make(double dt, bool& converged);
-  /// The joints' history in `state` at the begin of a step of the length dt from the accepted state.
+  /// The joints' history in `state`, which enters as that of the accepted state, at the begin of a step of the length
+  /// dt from there.
   bool begin_steps(double dt, State& state);
   /// Everything about a state whose accelerations the solver knows, and the loads of driven bodies; in fixed steps only
   /// what joints ask for in every step. False with the fault in `e`.
@@ -35,6 +36,8 @@ class StepAttempt {
  private:
   /// The numbers that an attempt may use as it likes; after them come marks.
   Span<double> scratch() { return {scratch_.data(), scratch_.size() - guard::marks}; }
+  [[gnu::noinline]] bool begin_step_of(int joint, double dt, const Point& start, State& state);
+  [[gnu::noinline]] bool commit_history_of(int joint);
   bool check_step(double dt);
   bool have_turned(const Evaluation& e) const;
   void note_turns(const Evaluation& e, std::span<double> history);

@@ -24,7 +24,7 @@ StepCorners::StepCorners(RunContext& run, StepAttempt& attempt)
 
 void StepCorners::list(double until) {
   const double from = run_.accepted.t();
-  if (from_ == from || !(run_.kinks.any() || load_kinks_.any())) return;
+  if (from_ == from || !any()) return;
   corners_.clear();
   from_ = from;
   near_ = std::max(8.0 * rounding * std::abs(until), near_corner * run_.settings.step);

@@ -18,6 +18,8 @@ class StepCorners {
     double time;
     bool of_motion;  ///< of a prescribed one
   };
+  /// Whether the run has any.
+  bool any() const { return run_.kinks.any() || load_kinks_.any(); }
   /// Lists those from the accepted state to `until`, unless they are known.
   void list(double until);
   const std::vector<Corner>& all() const { return corners_; }

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -38,13 +39,14 @@ class StageEquations {
   std::span<const double> units() const { return unit_; }
   /// Largest part of an increment or of its rates, in units; keeps a NaN.
   double norm(std::span<const double> increment) const {
-    double largest = 0.0, not_finite = 0.0;  // not_finite: 0, or NaN where a part is no finite number
+    // Bits of numbers without a sign are in the order of the numbers; what is not finite comes after all others.
+    constexpr std::uint64_t without_sign = ~std::uint64_t{0} >> 1;
+    std::uint64_t bits = 0;
     for (std::size_t i = 0; i < per_unit_.size(); ++i) {
-      const double part = std::abs(increment[i] * per_unit_[i]);
-      not_finite += part - part;
-      largest = std::max(largest, part);
+      bits = std::max(bits, std::bit_cast<std::uint64_t>(increment[i] * per_unit_[i]) & without_sign);
     }
-    return largest + not_finite;
+    const double largest = std::bit_cast<double>(bits);
+    return largest + (largest - largest);
   }
 
   /// Why the last call of a solver failed: an element's fault, or kind none with `trouble()`.

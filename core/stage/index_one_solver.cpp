@@ -88,7 +88,7 @@ double IndexOneSolver::factor_once() {
 }
 
 // x = M^-1 (x - Phi_q^T l) and the multipliers l, in place of both right sides.
-void IndexOneSolver::solve_linear(std::span<double> x, std::span<double> l) {
+[[gnu::always_inline]] inline void IndexOneSolver::solve_linear(std::span<double> x, std::span<double> l) {
   const Profile::Timer timer(equations_.profile(), Phase::solution);
   matrix_.solve(x, l);
 }
@@ -274,6 +274,14 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
   return true;
 }
 
+/// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
+[[gnu::always_inline]] inline void IndexOneSolver::solve_rows(std::span<const double> gap) {
+  const std::size_t nv = increment_.size();
+  std::fill_n(update_.begin(), nv, 0.0);
+  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
+  solve_linear(std::span(update_).first(nv), std::span(update_).subspan(nv));
+}
+
 bool IndexOneSolver::project_velocity(StateView& state) {
   if (state.lambda.size == 0) return true;
   if (!e_->has_rows_at(equations_.point_of(state))) {
@@ -304,14 +312,6 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
   for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += first_multipliers_[r];
   return true;
-}
-
-/// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
-void IndexOneSolver::solve_rows(std::span<const double> gap) {
-  const std::size_t nv = increment_.size();
-  std::fill_n(update_.begin(), nv, 0.0);
-  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
-  solve_linear(std::span(update_).first(nv), std::span(update_).subspan(nv));
 }
 
 bool IndexOneSolver::project_position(StateView& state) {

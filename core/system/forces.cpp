@@ -110,7 +110,7 @@ inline bool Forces::ask(const JointRecord& joint, const Point& point, bool deriv
 template <class Bodies>
 bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) const {
   const Profile::Timer timer(e.profile(), Phase::joints);
-  std::ranges::copy(inertia_.weight(), e.force.begin());
+  std::copy_n(inertia_.weight().data(), inertia_.weight().size(), e.force.data());
   e.acting = 0;
   JointForces out;
   bool clean = false;  // zeroed for the first that is asked, and after those that wrote into it
@@ -123,9 +123,14 @@ bool Forces::evaluate_in(const Point& point, bool derivatives, Evaluation& e) co
       Sleep& sleep = sleeps[at(j)];
       if (!sleep.holds(e.markers[at(joint.marker_a)], e.markers[at(joint.marker_b)])) {
         sleep.left = true;
-      } else if (!derivatives && e.acts[f] == 0) {
+      } else if (e.acts[f] == 0 && (!derivatives || joint.layout->analytic_derivatives != 0)) {
         e.acting = 31 * e.acting;
         e.potential[at(j)] = e.potential_rate[at(j)] = 0.0;
+        if (!derivatives) continue;
+        // What acts nowhere near does not change either.
+        constexpr std::size_t numbers = 4 * Bodies::velocities * Bodies::velocities;
+        std::fill_n(&e.force_q[numbers * f], numbers, 0.0);
+        std::fill_n(&e.force_v[numbers * f], numbers, 0.0);
         continue;
       }
     }

@@ -84,7 +84,7 @@ void Markers::move_in_plane(const Point& point, bool still, MarkerValues& values
   const planar::Mount* const mounts = mounts_.data();
   planar::Arm* const arms = values.arms.data();
   MarkerKinematics* const markers = values.markers.data();
-  std::ranges::copy(point.v, values.v.begin());
+  std::copy_n(point.v.data(), point.v.size(), values.v.data());
   if (still) {
     for (std::size_t b = 0; b < at(layout_.free_bodies()); ++b) {
       const double v[3] = {point.v[3 * b], point.v[3 * b + 1], point.v[3 * b + 2]};
@@ -97,7 +97,7 @@ void Markers::move_in_plane(const Point& point, bool still, MarkerValues& values
     }
     return;
   }
-  std::ranges::copy(point.q, values.q.begin());
+  std::copy_n(point.q.data(), point.q.size(), values.q.data());
   for (std::size_t b = 0; b < at(layout_.free_bodies()); ++b) {
     // Numbers of their own, which no marker can change.
     const double q[3] = {point.q[3 * b], point.q[3 * b + 1], point.q[3 * b + 2]};
@@ -131,12 +131,20 @@ void Markers::move_in_space(const Point& point, MarkerValues& values) const {
 }
 
 void Markers::move_with(BodyId place, const planar::Turn& turn, MarkerValues& values) const {
-  const double *q = &values.q[3 * at(place)], *v = &values.v[3 * at(place)];
+  const planar::Mount* const mounts = mounts_.data();
+  planar::Arm* const arms = values.arms.data();
+  MarkerKinematics* const markers = values.markers.data();
+  const double *from_q = &values.q[3 * at(place)], *from_v = &values.v[3 * at(place)];
+  // Numbers of their own, which no marker can change.
+  const double q[3] = {from_q[0], from_q[1], from_q[2]}, v[3] = {from_v[0], from_v[1], from_v[2]};
+  const planar::Turn turned = turn;
   const Range own = of_body_[at(place)];
   for (int i = own.first; i < own.end; ++i) {
-    const std::size_t m = at(moving_[at(i)]);
-    planar::marker_arm(mounts_[m], q, v, turn, values.arms[m]);
-    planar::marker_kinematics(mounts_[m], v, turn, values.arms[m], values.markers[m]);
+    const int m = moving_[at(i)];
+    planar::Arm arm;
+    planar::marker_arm(mounts[m], q, v, turned, arm);
+    arms[m] = arm;
+    planar::marker_kinematics(mounts[m], v, turned, arm, markers[m]);
   }
 }
 

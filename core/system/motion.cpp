@@ -118,9 +118,10 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
   }
   out = {value.value, value.rate, value.acceleration};
   if (driver.kind != DriverKind::velocity) return true;
-  double integral = 0.0;
-  if (!(driver.table ? driver.table->integral(t, integral, failure)
-                     : antiderivatives_[d].evaluate(t, integral, failure))) {
+  const bool steady = !driver.table && !driver.value.depends_on_time();
+  double integral = steady ? value.value * (t - model_.settings.start) : 0.0;
+  if (!steady && !(driver.table ? driver.table->integral(t, integral, failure)
+                                : antiderivatives_[d].evaluate(t, integral, failure))) {
     return false;
   }
   out = {starts_[d] + (integral - table_starts_[d]), value.value, value.rate};
@@ -128,7 +129,7 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
 }
 
 bool Motions::evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept {
-  PathPose frame;
+  std::optional<PathPose> frame;
   PlatformTurn platform;
   int framed = -1;  // the entry that both are of
   for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
@@ -136,11 +137,11 @@ bool Motions::evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFa
       out[d] = {};
       if (!legs_[d]) continue;
       if (framed != kinematics) {
-        if (!path(kinematics, t, frame, work, fault)) return false;
-        platform = platform_angle(static_cast<int>(d), frame);
+        if (!path(kinematics, t, frame.emplace(), work, fault)) return false;
+        platform = platform_angle(static_cast<int>(d), *frame);
       }
       framed = kinematics;
-      const CrankPose pose = solve_crank(*legs_[d], frame[0], frame[1], platform);
+      const CrankPose pose = solve_crank(*legs_[d], (*frame)[0], (*frame)[1], platform);
       if (!reaches(static_cast<int>(d), t, pose, fault)) return false;
       out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
       continue;

@@ -64,6 +64,25 @@ void System::begin_at(const System& whole, const State& start, State& own) {
   driven_.count_turns(start.q(), point(own), e);
 }
 
+// Inline, as what is called once in every step is elsewhere: a step of few bodies feels the call.
+[[gnu::always_inline]] inline bool System::fill(const Point& point, unsigned terms, unsigned kept,
+                                                Evaluation& e) const {
+  e.fault.kind = Fault::Kind::none;
+  const bool still = kept != 0;
+  markers_.move(point, still, e);
+  joints_.shift(e);
+  const bool moves = !driven_.empty() || (terms & (term_position | term_force)) != 0;
+  if (moves && !model_.drivers.empty() && !e.bring_to(point.t, *motions_, e.fault.motion)) {
+    e.fault.kind = Fault::Kind::motion;
+    return false;
+  }
+  if (!driven_.empty() && e.driven_time != point.t) driven_.place(point, e);
+  if (!joints_.evaluate_coordinates(point, terms, e)) return false;
+  if ((terms & (term_force | term_event)) != 0 && !forces_.applied().set_functions(point, e)) return false;
+  if ((terms & term_position) != 0 && !constraints_.evaluate(point, terms & ~kept, still, e)) return false;
+  return (terms & term_force) == 0 || forces_.evaluate(point, (terms & term_derivative) != 0, e);
+}
+
 bool System::evaluate(const Point& point, unsigned terms, KeptEvaluation& known, KeptEvaluation& out) const {
   constexpr unsigned of_joints = term_coordinate | term_event | term_turn;
   if (!known->is_at(point, terms & ~of_joints)) {
@@ -89,23 +108,6 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   std::copy_n(point.z.begin(), e.z.size(), e.z.begin());  // the integrator may carry integrals after them
   std::copy_n(point.h.begin(), e.h.size(), e.h.begin());
   return true;
-}
-
-bool System::fill(const Point& point, unsigned terms, unsigned kept, Evaluation& e) const {
-  e.fault.kind = Fault::Kind::none;
-  const bool still = kept != 0;
-  markers_.move(point, still, e);
-  joints_.shift(e);
-  const bool moves = !driven_.empty() || (terms & (term_position | term_force)) != 0;
-  if (moves && !model_.drivers.empty() && !e.bring_to(point.t, *motions_, e.fault.motion)) {
-    e.fault.kind = Fault::Kind::motion;
-    return false;
-  }
-  if (!driven_.empty() && e.driven_time != point.t) driven_.place(point, e);
-  if (!joints_.evaluate_coordinates(point, terms, e)) return false;
-  if ((terms & (term_force | term_event)) != 0 && !forces_.applied().set_functions(point, e)) return false;
-  if ((terms & term_position) != 0 && !constraints_.evaluate(point, terms & ~kept, still, e)) return false;
-  return (terms & term_force) == 0 || forces_.evaluate(point, (terms & term_derivative) != 0, e);
 }
 
 void System::complete_rates(unsigned terms, Evaluation& e) const {
