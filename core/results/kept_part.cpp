@@ -101,7 +101,17 @@ class EventHash {
   Sha256 hash_;
 };
 
-void copy_hdf5(const fs::path& file, const KeptPart& part, const RecordLayout& layout, Hdf5Writer& copy,
+/// Words of events are numbered as they come in a text, and as in the model in a file of this run.
+void renumber(std::span<double> events, std::size_t width, std::size_t column, const std::vector<std::string>& from,
+              const std::vector<std::string>& to) {
+  if (from == to) return;
+  for (std::size_t i = column; i < events.size(); i += width) {
+    if (!(events[i] >= 0.0 && events[i] < static_cast<double>(from.size()))) continue;
+    events[i] = static_cast<double>(std::ranges::find(to, from[static_cast<std::size_t>(events[i])]) - to.begin());
+  }
+}
+
+void copy_rows(const fs::path& file, const KeptPart& part, const RecordLayout& layout, Hdf5Writer& copy,
                RowHash& row_hash) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) require_enough(file, "rows", 0, std::max<std::int64_t>(part.rows, 1));
@@ -113,9 +123,13 @@ void copy_hdf5(const fs::path& file, const KeptPart& part, const RecordLayout& l
     copy.write({.rows = some, .events = {}});
     row_hash.write({.rows = some, .events = {}});
   });
+  std::vector<double> own;
   const std::int64_t events = first_events(*reader, part.events, [&](std::span<const double> some) {
-    copy.write({.rows = {}, .events = some});
-    event_hash.add(some);
+    own.assign(some.begin(), some.end());
+    renumber(own, layout.events.size(), 1, reader->layout().joints, layout.joints);
+    renumber(own, layout.events.size(), 2, reader->layout().kinds, layout.kinds);
+    copy.write({.rows = {}, .events = own});
+    event_hash.add(own);
   });
   require_enough(file, "rows", rows, part.rows);
   require_enough(file, "events", events, part.events);
@@ -205,13 +219,21 @@ KeptFiles read_kept(const fs::path& directory, const KeptPart& part, ResultForma
   kept.row_hash = std::make_unique<RowHash>();
   if (format != ResultFormat::hdf5) read_text(directory / "results.csv", part, layout, kept);
   if (format == ResultFormat::csv) return kept;
-  auto row_hash = std::make_unique<RowHash>();
   Hdf5Writer::Options later = options;
   later.named_later = true;
-  const fs::path file = directory / "results.h5";
-  kept.hdf5 = std::make_unique<Hdf5Writer>(file, layout, later);
-  copy_hdf5(file, part, layout, *kept.hdf5, *row_hash);
-  kept.row_hash = std::move(row_hash);
+  const auto copy = [&](const char* name) {
+    kept.hdf5.reset();
+    kept.hdf5 = std::make_unique<Hdf5Writer>(directory / "results.h5", layout, later);
+    kept.row_hash = std::make_unique<RowHash>();
+    copy_rows(directory / name, part, layout, *kept.hdf5, *kept.row_hash);
+  };
+  try {
+    copy("results.h5");
+  } catch (const Error& error) {
+    // A kill may cut the writing of a header in two; the text has the same rows.
+    if (format != ResultFormat::both || error.id() != "unreadable-result") throw;
+    copy("results.csv");
+  }
   return kept;
 }
 

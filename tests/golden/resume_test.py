@@ -108,6 +108,19 @@ class Resume(ProgramTest):
             self.assertEqual(130, process.wait(timeout=60))
             self.assertEqual("interrupted", json.loads(self.read(out, "summary.json"))["status"])
 
+    def test_of_a_damaged_hdf5_file_the_text_has_the_rows(self):
+        options = ("--end", "0.1 s", "--checkpoint", "0")
+        name = self.interrupted(signal.SIGTERM, self.whole(*options), *options)
+        with open(self.path(name, "results.h5"), "r+b") as file:
+            for place in range(os.path.getsize(file.name) // 8, os.path.getsize(file.name), 997):
+                file.seek(place)
+                file.write(b"torn")
+        self.freeplay("export", name + "/results.h5", "--to", "csv", "--out", "no.csv", code=6)
+        self.freeplay("run", "--resume", name, "--quiet")
+        self.assert_same(name, "whole")
+        os.rename(self.path(name, "results.csv"), self.path("text.csv"))
+        self.freeplay("compare", name + "/results.h5", "text.csv")
+
     def test_a_run_with_inputs_goes_on_with_those_that_it_began_with(self):
         self.model = self.write("held.yaml", HELD)
         self.write("course.csv", "time,motor\n0,1\n0.0137,2\n3,-1\n7.77,0.5\n90,0\n")
