@@ -2,6 +2,8 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -37,17 +39,23 @@ double distance(const Model& model, const Marker& first, const Marker& second) {
 void doubt_short_links(
     const Model& model,
     const std::function<void(const char* id, const std::string& message, const JointElement&)>& doubt) {
-  for (BodyId body = 0; body < static_cast<BodyId>(model.bodies.size()); ++body) {
+  struct Holds {
     std::array<Pin, 2> pins{};
-    std::size_t joints = 0, count = 0;
-    for (const JointElement& joint : model.joints) {
-      if (joint.gear >= 0 || is_force_element(joint)) continue;
-      const Marker &a = model.markers[at(joint.marker_a)], &b = model.markers[at(joint.marker_b)];
-      if (a.body != body && b.body != body) continue;
-      ++joints;
-      if (!is_pin(joint) || count == pins.size()) continue;
-      pins[count++] = a.body == body ? Pin{&joint, &a, b.body} : Pin{&joint, &b, a.body};
+    std::size_t joints = 0, count = 0;  // count: pins, at most two
+  };
+  std::vector<Holds> by_body(model.bodies.size());
+  for (const JointElement& joint : model.joints) {
+    if (joint.gear >= 0 || is_force_element(joint)) continue;
+    const Marker &a = model.markers[at(joint.marker_a)], &b = model.markers[at(joint.marker_b)];
+    for (const auto& [own, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+      if (own->body == ground || (own == &b && a.body == b.body)) continue;
+      Holds& holds = by_body[at(own->body)];
+      ++holds.joints;
+      if (is_pin(joint) && holds.count < holds.pins.size()) holds.pins[holds.count++] = {&joint, own, other->body};
     }
+  }
+  for (BodyId body = 0; body < static_cast<BodyId>(by_body.size()); ++body) {
+    const auto& [pins, joints, count] = by_body[at(body)];
     if (joints != 2 || count != 2 || pins[0].other == pins[1].other) continue;
     const auto play = [](const Pin& pin) { return pin.joint->has_play ? pin.joint->layout.clearance : 0.0; };
     const Pin& loose = play(pins[0]) > play(pins[1]) ? pins[0] : pins[1];

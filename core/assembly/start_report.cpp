@@ -56,7 +56,7 @@ double turn_of(const System& closed, BodyId body, std::span<const double> q) {
 const JointElement* turned_by(const System& closed, BodyId id, std::span<const double> q) {
   const Body& body = closed.model().bodies[at(id)];
   const bool given = !body.position || body.angle || body.rotation;
-  if (given || !has_parts(closed.model(), id) || turn_of(closed, id, q) <= turned) return nullptr;
+  if (given || turn_of(closed, id, q) <= turned || !has_parts(closed.model(), id)) return nullptr;
   return guide_on_ground(closed, id);
 }
 
@@ -72,21 +72,21 @@ std::vector<MovedStart> moved_starts(const System& closed, std::span<const doubl
                        const Location& location) {
     if (by > least) out.push_back({body.name, quantity, unit, by, by > far, location});
   };
-  // In play a pose counts to parts of it.
-  const auto least_shift = [&](BodyId id) {
-    double least = noticed * closed.size();
-    for (const JointElement& joint : model.joints) {
-      if (!joint.has_play || !(joint.layout.clearance > 0.0)) continue;
-      const bool holds = model.markers[at(joint.marker_a)].body == id || model.markers[at(joint.marker_b)].body == id;
-      if (holds) least = std::min(least, noticed_pose_in_play * joint.layout.clearance);
+  std::vector<double> least_shift(model.bodies.size(), noticed * closed.size());
+  for (const JointElement& joint : model.joints) {
+    if (!joint.has_play || !(joint.layout.clearance > 0.0)) continue;
+    for (const int marker : {joint.marker_a, joint.marker_b}) {
+      const BodyId body = model.markers[at(marker)].body;
+      if (body == ground) continue;
+      double& least = least_shift[at(body)];  // in play a pose counts to parts of it
+      least = std::min(least, noticed_pose_in_play * joint.layout.clearance);
     }
-    return least;
-  };
+  }
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[at(b)];
     const double size = closed.size();
     if (body.position)
-      add(body, "position", "m", poses.shift(b, q), least_shift(b), far_part * size, body.pose_location);
+      add(body, "position", "m", poses.shift(b, q), least_shift[at(b)], far_part * size, body.pose_location);
     if (body.angle) add(body, "angle", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (body.rotation) add(body, "orientation", "rad", poses.turn(b, q), noticed, far_turn, body.pose_location);
     if (const JointElement* guide = turned_by(closed, b, q))

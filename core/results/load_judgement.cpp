@@ -94,8 +94,9 @@ class LoadJudge {
     TrustReason reason{.id = "body-speed", .level = Trust::doubtful, .message = {}, .value = 0.0};
     for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
       const double speed = largest(record_.statistics.largest().places().speed(b));
+      if (speed <= std::min(fastest_slide, fastest_body) || speed <= reason.value) continue;
       const double limit = slides_on_ground(b) ? fastest_slide : fastest_body;
-      if (speed <= limit || speed <= reason.value) continue;
+      if (speed <= limit) continue;
       reason.value = speed, reason.limit = limit;
       reason.element = fmt::format("body '{}'", model_.bodies[at(b)].name);
     }
