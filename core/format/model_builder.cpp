@@ -93,6 +93,7 @@ class ModelBuilder {
  private:
   void keep_frames() {
     std::vector<Marker>& frames = draft_.model.frames;
+    frames.reserve(draft_.frames.size());
     for (const auto& [name, frame] : draft_.frames) frames.push_back(marker_of(frame, name));
     std::ranges::sort(frames, {}, &Marker::name);
   }
@@ -282,6 +283,9 @@ class ModelBuilder {
     for (const Part& part : draft.parts) add_gears(draft, part);
     for (const Part& part : draft.parts) add_drivers(draft, part);
     for (const Part& part : draft.parts) add_forces(draft, part);
+    draft.model.bodies.shrink_to_fit();
+    draft.model.markers.shrink_to_fit();
+    draft.model.joints.shrink_to_fit();
   }
 
   bool within_limit() {

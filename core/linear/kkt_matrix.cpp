@@ -182,6 +182,7 @@ std::vector<int> KktMatrix::set_pattern(int size, std::span<const MatrixEntry> e
     }
     slots[at(order[i])] = static_cast<int>(m.rows.size()) - 1;
   }
+  m.rows.shrink_to_fit();
   std::partial_sum(m.starts.begin(), m.starts.end(), m.starts.begin());
   m.values.assign(m.rows.size(), 0.0);
   m.factored.assign(m.is_dense() ? m.rows.size() : 0, 0.0);

@@ -74,6 +74,7 @@ Channels::Channels(const Model& model, bool all) : planar_(model.space == Space:
   energy.residual = add("energy.residual", "J");
   add_asked(model, all);
   if (!all) add_formulas(model);
+  all_.shrink_to_fit();
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/index.h"
 #include "component/joint_roles.h"
 
 namespace freeplay {
@@ -11,7 +12,8 @@ ContactAdvice::ContactAdvice(const Model& model)
     : from_(model.settings.start + model.settings.discard), per_contact_(model.settings.per_contact) {
   for (const JointElement& joint : model.joints) {
     auto& events = fields_.emplace_back();
-    joints_.emplace_back();
+    place_.push_back(joint.layout.events.size > 0 ? static_cast<int>(joints_.size()) : -1);
+    if (place_.back() >= 0) joints_.emplace_back();
     for (std::size_t i = 0; i < joint.layout.events.size; ++i) {
       const Event& event = joint.layout.events[i];
       const bool begins = event_role(joint.layout, i) == EventRole::contact_begin;
@@ -36,15 +38,15 @@ double ContactAdvice::fewest_steps_of_hard() const {
 }
 
 void ContactAdvice::event(const EventRecord& record) {
-  const Fields& at = fields_[static_cast<std::size_t>(record.joint)][static_cast<std::size_t>(record.event)];
-  OfJoint& joint = joints_[static_cast<std::size_t>(record.joint)];
-  if (at.speed >= 0) joint.speed = std::fmax(joint.speed, record.fields[static_cast<std::size_t>(at.speed)]);
-  if (at.duration < 0 || at.steps < 0) return;
-  const double steps = record.fields[static_cast<std::size_t>(at.steps)];
-  const double duration = record.fields[static_cast<std::size_t>(at.duration)];
+  const Fields& fields = fields_[at(record.joint)][at(record.event)];
+  OfJoint& joint = joints_[at(place_[at(record.joint)])];
+  if (fields.speed >= 0) joint.speed = std::fmax(joint.speed, record.fields[static_cast<std::size_t>(fields.speed)]);
+  if (fields.duration < 0 || fields.steps < 0) return;
+  const double steps = record.fields[static_cast<std::size_t>(fields.steps)];
+  const double duration = record.fields[static_cast<std::size_t>(fields.duration)];
   if (std::isnan(steps)) return;
-  if (at.force >= 0) {
-    const double force = record.fields[static_cast<std::size_t>(at.force)];
+  if (fields.force >= 0) {
+    const double force = record.fields[static_cast<std::size_t>(fields.force)];
     const double decade = force > 0.0 ? std::floor(std::log10(force)) + 9.0 : 0.0;
     const auto place = static_cast<std::size_t>(std::clamp(decade, 0.0, decades - 1.0));
     joint.all[place] = std::fmin(joint.all[place], steps);

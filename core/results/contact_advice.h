@@ -27,7 +27,10 @@ class ContactAdvice : public Sink {
   /// the whole run or from Settings::discard on; infinite without.
   double fewest_steps_of_hard() const;
   /// Largest speed at which a contact of this joint began, from the start of the run on [m/s]; 0 without one.
-  double approach_speed(int joint) const { return joints_[static_cast<std::size_t>(joint)].speed; }
+  double approach_speed(int joint) const {
+    const int place = place_[static_cast<std::size_t>(joint)];
+    return place < 0 ? 0.0 : joints_[static_cast<std::size_t>(place)].speed;
+  }
   /// Contacts that ended, and the steps that each should take (Settings::per_contact).
   long ended() const { return ended_; }
   double per_contact() const { return per_contact_; }
@@ -59,7 +62,8 @@ class ContactAdvice : public Sink {
   };
   double from_, per_contact_;
   std::vector<std::vector<Fields>> fields_;  // joint, event
-  std::vector<OfJoint> joints_;
+  std::vector<OfJoint> joints_;              // with events
+  std::vector<int> place_;                   // of each joint among these, or -1
   long under_resolved_ = 0, ended_ = 0;
   double fewest_steps_ = std::numeric_limits<double>::quiet_NaN(), step_ = fewest_steps_;
 };

@@ -86,11 +86,8 @@ std::string source_of(const JointElement& joint) {
   return text;
 }
 
-}  // namespace
-
-RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked) {
-  RecordLayout layout;
-  // Columns of one element are neighbours; its source is that of all of them.
+/// Of each channel. Columns of one element are neighbours; its source is that of all of them.
+std::vector<std::string> sources_of(const Model& model, const Channels& channels) {
   std::vector<std::string> sources(channels.all().size(), "equations of motion");
   for (std::size_t i = 0; i < sources.size(); ++i) {
     const std::string_view name = channels.all()[i].name;
@@ -109,13 +106,31 @@ RecordLayout record_layout(const Model& model, const Channels& channels, std::sp
          i < sources.size() && channels.all()[i].name.starts_with(prefix); ++i) {
       sources[i] = source;
     }
-    if (joint.has_play || columns.normal_force >= 0) layout.bearings.push_back(joint.name);
   }
+  return sources;
+}
+
+}  // namespace
+
+RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
+                           bool described) {
+  RecordLayout layout;
+  layout.columns.reserve(picked.size());
   for (const std::size_t index : picked) {
     const ChannelInfo& channel = channels.all()[index];
-    layout.columns.push_back({channel.name, std::string(channel.unit), long_name(channel.name), sources[index]});
+    layout.columns.push_back({channel.name, std::string(channel.unit), "", ""});
+  }
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointElement& joint = model.joints[j];
+    if (joint.has_play || channels.joints[j].normal_force >= 0) layout.bearings.push_back(joint.name);
   }
   add_event_columns(model, layout);
+  if (!described) return layout;
+  const std::vector<std::string> sources = sources_of(model, channels);
+  for (std::size_t c = 0; c < picked.size(); ++c) {
+    layout.columns[c].long_name = long_name(layout.columns[c].name);
+    layout.columns[c].source = sources[picked[c]];
+  }
   return layout;
 }
 

@@ -9,7 +9,9 @@
 
 namespace freeplay {
 
-/// `picked`: indices into Channels::all(). Root attributes are left to the caller.
-RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked);
+/// `picked`: indices into Channels::all(). Root attributes are left to the caller. `described`: with phrases and
+/// sources of columns, which text files do without.
+RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
+                           bool described = true);
 
 }  // namespace freeplay

@@ -19,8 +19,9 @@ std::string compact(const Json& json) { return json.dump(-1, ' ', false, Json::e
 
 RecordLayout layout_of(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
                        const Json& provenance) {
-  RecordLayout layout = record_layout(model, channels, picked);
-  layout.attributes = attributes_of(model, provenance);
+  const bool described = model.settings.format != ResultFormat::csv;
+  RecordLayout layout = record_layout(model, channels, picked, described);
+  if (described) layout.attributes = attributes_of(model, provenance);
   return layout;
 }
 
@@ -67,6 +68,7 @@ Recording::Recording(ResultDirectory directory, const Model& model, const Channe
                 thread_.add_event(numbers);
               }),
       advice_(model) {
+  if (format_ == ResultFormat::csv) std::vector<RecordColumn>().swap(layout_.columns);  // the text has its header
   if (kept != nullptr) return;
   directory_.write(model_copy_name(model), model.text);
   for (const InputFile& input : model.inputs) directory_.write("inputs/" + input.name, input.text);

@@ -1,7 +1,5 @@
 #include "results/text_writers.h"
 
-#include <string_view>
-
 #include "base/error.h"
 #include "base/number_text.h"
 
@@ -18,8 +16,10 @@ TextWriter::TextWriter(const std::filesystem::path& path, std::span<const Record
                        GrowingFile::Begin begin)
     : width_(columns.size()), file_(path, begin) {
   if (begin == GrowingFile::Begin::append) return;
-  header_ = text_header(columns);
-  file_.line() += std::string_view(header_).substr(0, header_.size() - 1);
+  std::string header = text_header(columns);
+  header.pop_back();
+  file_.line().reserve(header.size() + 1);
+  file_.line() += header;
   file_.end_line();
 }
 

@@ -29,7 +29,6 @@ class TextWriter : public RecordWriter {
   virtual void note();
 
   std::size_t width_;
-  std::string header_;
   GrowingFile file_;
 
  private:
@@ -63,7 +62,8 @@ class EventTextWriter : public TextWriter {
   /// Throws Error{file}.
   EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout)
       : TextWriter(path, layout.events, GrowingFile::Begin::empty), layout_(layout) {
-    hash_.add(header_.data(), header_.size());
+    const std::string header = text_header(layout.events);
+    hash_.add(header.data(), header.size());
   }
   /// Goes on in a file that has `kept` as its text.
   EventTextWriter(const std::filesystem::path& path, const RecordLayout& layout, const Sha256& kept)

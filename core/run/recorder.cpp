@@ -34,7 +34,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       clearances_(run.model, run.system.joints(), run.channels),
       ledger_(run.system.joints(), run.channels),
       maxima_(run.system.joints(), run.channels),
-      peaks_(statistics_.largest().places().size()),
+      peaks_(run.adaptive ? statistics_.largest().places().size() : 0),
       contact_rows_(run.system, run.channels, statistics_, run.adaptive),
       contact_peaks_(contact_rows_.largest().size()),
       storm_(run.model.joints.size() + 1, storm_limits(run.settings, run.adaptive)),
@@ -42,7 +42,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       row_(run.channels.all().size(), 0.0),
       row_between_(row_.size(), 0.0),
       row_middle_(row_.size(), 0.0),
-      row_aside_(row_.size(), 0.0),
+      row_aside_(run.adaptive ? row_.size() : 0, 0.0),
       residual_(at(run.system.layout().nc())) {
   for (int j = 0; j < run.system.joints().count(); ++j) {
     const JointColumns& columns = run.channels.joints[at(j)];
