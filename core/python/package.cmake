@@ -44,8 +44,9 @@ freeplay_builtins(freeplay_python OFF)
 # library of the interpreter gets between.
 # The rooms are compiled for programs, to which data of other libraries is as near as their own: that of the C++ library
 # comes with them.
+# Code and constants follow each other without empty pages between.
 target_link_options(freeplay_python PRIVATE -Wl,--exclude-libs,ALL -Wl,-Bsymbolic -Wl,--gc-sections -static-libstdc++
-                                            -Wl,-z,pack-relative-relocs
+                                            -Wl,-z,pack-relative-relocs -Wl,-z,noseparate-code
                                             -Wl,--version-script=${PROJECT_SOURCE_DIR}/core/python/exported.map)
 
 # The files of the package are used where they stand: what is changed there is so at once.

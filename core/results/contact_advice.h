@@ -14,7 +14,7 @@ namespace freeplay {
 /// hard impacts from the start on, as what steps do not resolve there is missing in the motion afterwards.
 class ContactAdvice : public Sink {
  public:
-  explicit ContactAdvice(const Model& model);
+  [[gnu::cold]] explicit ContactAdvice(const Model& model);
 
   void row(std::span<const double>) override {}
   void event(const EventRecord& record) override;

@@ -31,8 +31,8 @@ struct KeptFiles {
 
 /// Reads the kept part of the files in `directory` and copies that of results.h5 into a new file. Changes none of those
 /// that are there. Throws Error{file} "bad-checkpoint" where one holds less, other columns, or other numbers.
-KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& part, ResultFormat format,
-                    const RecordLayout& layout, const Hdf5Writer::Options& options);
+[[gnu::cold]] KeptFiles read_kept(const std::filesystem::path& directory, const KeptPart& part, ResultFormat format,
+                                  const RecordLayout& layout, const Hdf5Writer::Options& options);
 
 /// Which file of a killed run holds what it did not write, as far as the fingerprints of `part` show, and rows and
 /// events that two files have. Empty where none does.

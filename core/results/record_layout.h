@@ -11,7 +11,7 @@ namespace freeplay {
 
 /// `picked`: indices into Channels::all(). Root attributes are left to the caller. `described`: with phrases and
 /// sources of columns, which text files do without.
-RecordLayout record_layout(const Model& model, const Channels& channels, std::span<const std::size_t> picked,
-                           bool described = true);
+[[gnu::cold]] RecordLayout record_layout(const Model& model, const Channels& channels,
+                                         std::span<const std::size_t> picked, bool described = true);
 
 }  // namespace freeplay

@@ -6,6 +6,6 @@
 namespace freeplay {
 
 /// Adds `singular-position` where they say nothing.
-void judge_singular(const RunRecord& record, Verdict& verdict);
+[[gnu::cold]] void judge_singular(const RunRecord& record, Verdict& verdict);
 
 }  // namespace freeplay

@@ -13,7 +13,7 @@ namespace freeplay {
 
 class LoadChannels {
  public:
-  explicit LoadChannels(const System& system);
+  [[gnu::cold]] explicit LoadChannels(const System& system);
 
   struct Load {
     const MotionFormulas* formulas;

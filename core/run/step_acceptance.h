@@ -14,8 +14,8 @@ namespace freeplay {
 /// Where a function returns false the run is over, with its outcome filled.
 class StepAcceptance {
  public:
-  StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt& attempt, Recorder& recorder, RunDoubts& doubts,
-                 EnergyGrowth& growth, Corners& corners, StepCorners& step_corners);
+  [[gnu::cold]] StepAcceptance(RunContext& run, RunFailure& failure, StepAttempt& attempt, Recorder& recorder,
+                               RunDoubts& doubts, EnergyGrowth& growth, Corners& corners, StepCorners& step_corners);
 
   /// The start of a run.
   bool begin();

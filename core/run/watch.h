@@ -120,7 +120,7 @@ class SingularPassage {
 
 class RunWatch {
  public:
-  RunWatch(const System& system, const Channels& channels);
+  [[gnu::cold]] RunWatch(const System& system, const Channels& channels);
 
   /// Whether the force of some joint with play has grown so much that its row should be looked at: one comparison a
   /// joint.
