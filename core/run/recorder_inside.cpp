@@ -11,7 +11,7 @@ namespace {
 
 // Where positions that are off by roundings make forces that are off by their part of the fourth power of this [root of
 // the regularity], 1e-14, by much more.
-constexpr double noisy_forces = 5e-3;
+constexpr double noisy_forces = 2e-3;
 constexpr double nearest_doubted = 1e-8;   // regularity: nothing can be solved for nearer to it
 constexpr double farther = 1.5;            // of the distance from a singular position
 constexpr double first_part = 1.0 / 64.0;  // of the way to the other end of a step, where that is looked for
