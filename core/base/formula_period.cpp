@@ -42,8 +42,8 @@ namespace {
 
 constexpr double sameness = 1e-6;  // of values a period apart, by the largest
 constexpr double roundings = 1e-9;
-constexpr double constant_below =
-    1e-6;  // of what operations show: what comes again after less is constant but for instants
+// Of the period that operations show: what comes again after less is constant but for instants.
+constexpr double constant_below = 1e-6;
 constexpr int most_multiples = 1000, instants = 256, between_corners = 8, corners_looked_at = 4096;
 
 }  // namespace

@@ -83,7 +83,8 @@ class RunJob {
     from == nullptr ? checkpoints_.begin() : checkpoints_.go_on(*from);
   }
 
-  int execute() {
+  /// `format_note`: why the format is not the usual one, for the log.
+  int execute(const std::string& format_note) {
     note(fmt::format("freeplay {} runs {} from {:g} s to {:g} s", program_version, loaded_.model->file,
                      settings().start, settings().end));
     if (!recording_.guarded()) {
@@ -95,6 +96,7 @@ class RunJob {
       note(fmt::format("plugin {} {}, compiler {}, from {}", library.table->name(), library.table->version(),
                        library.table->compiler(), library.path));
     }
+    if (!format_note.empty()) recording_.log().write("note", format_note);
     if (checkpoints_.resumed() > 0) note(checkpoints_.resumed_words());
     for (const std::string& text : warnings_of(loaded_.diagnostics, {})) recording_.log().write("warning", text);
     for (const MovedStart& moved : assembled_.start.report.moved) note(sentence(moved));
@@ -384,7 +386,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
     inputs = read_inputs(options.inputs, *loaded.model, loaded.diagnostics, loaded.model->inputs.emplace_back());
   }
   if (loaded.diagnostics.has_errors()) return report_failure(loaded.diagnostics, 3, common);
-  settle_format(*loaded.model, options, common);
+  const std::string format_note = settle_format(*loaded.model, options, common);
   if (resumed != nullptr) require_same_making(resumed->checkpoint, provenance(*loaded.model, {}));
   const Checkpoint* from = resumed != nullptr && resumed->goes_on ? &resumed->checkpoint : nullptr;
   if (!options.dry_run) announce_size(*loaded.model, path, from != nullptr ? from->rows() : 0, options, common);
@@ -404,7 +406,7 @@ int run(const RunOptions& options, const CommonOptions& common, const Resumption
   require_thread();
   watch_interrupts();  // a result directory that is begun gets its summary
   const int exit_code =
-      RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from, inputs).execute();
+      RunJob(loaded, *assembled, path, options, common, repeats.get(), twin.get(), from, inputs).execute(format_note);
   if (options.report && exit_code != 6) write_report_of(path, common);
   return exit_code;
 }

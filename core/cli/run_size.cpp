@@ -11,17 +11,18 @@
 
 namespace freeplay {
 
-void settle_format(Model& model, const RunOptions& options, const CommonOptions& common) {
+std::string settle_format(Model& model, const RunOptions& options, const CommonOptions& common) {
   constexpr double most_columns = 20000.0;  // a dataset with its headers takes some 25 kB while it is written
-  if (model.settings.format_given || model.settings.format == ResultFormat::csv) return;
+  if (model.settings.format_given || model.settings.format == ResultFormat::csv) return {};
   const double columns = expected_size(model, Channels(model), 0).columns;
-  if (columns <= most_columns) return;
+  if (columns <= most_columns) return {};
   model.settings.format = ResultFormat::csv;
-  if (options.twin_pipe >= 0 || common.quiet) return;
-  print_messages(fmt::format("freeplay: note: {0} columns go to results.csv alone: results.h5 would take some {1} of "
-                             "memory; choose some --channels, or ask for it by --format both\n",
-                             number_text(columns), bytes_text(25e3 * columns)),
-                 common.no_color);
+  const std::string note = fmt::format(
+      "{} columns go to results.csv alone: results.h5 would take some {} of memory; choose some "
+      "--channels, or ask for it by --format both",
+      number_text(columns), bytes_text(25e3 * columns));
+  if (options.twin_pipe < 0 && !common.quiet) print_messages("freeplay: note: " + note + "\n", common.no_color);
+  return note;
 }
 
 void announce_size(const Model& model, const std::filesystem::path& directory, std::int64_t rows_there,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "cli/run_options.h"
 #include "model/model.h"
@@ -10,8 +11,8 @@
 namespace freeplay {
 
 /// Rows of so many columns that results.h5 would take over half a gigabyte of memory go to results.csv alone where
-/// neither the file nor an option gives the format; a note says so.
-void settle_format(Model& model, const RunOptions& options, const CommonOptions& common);
+/// neither the file nor an option gives the format. Prints and returns a sentence that says so.
+std::string settle_format(Model& model, const RunOptions& options, const CommonOptions& common);
 
 /// Prints how much will be written where that is 1 GB or more. `rows_there`: of a result that goes on. Throws
 /// Error{file} "too-large" where it is more than half of the room that there is, unless --yes was given.

@@ -5,8 +5,8 @@
 
 namespace freeplay {
 
-/// Headers of datasets and lists of their chunks stay in memory: HDF5 1.10 fails where
-/// it takes them out of its cache in a file that others read meanwhile, which some 130 loose links came to.
+/// Headers of datasets and lists of their chunks stay in memory: HDF5 1.10 fails where it takes them out of its cache
+/// in a file that others read meanwhile, which some 130 loose links came to.
 inline void keep_headers(hid_t access) {
   H5AC_cache_config_t cache{};
   cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;

@@ -190,6 +190,7 @@ class Results(ProgramTest):
         _, err = self.freeplay("run", chain, "--set", "windows=800", "--end", "1 ms", "--out", "many")
         self.assertRegex(err, "note: [0-9]+ columns go to results.csv alone: .*choose some --channels, or ask for it by --format both")
         self.assertFalse(os.path.exists(self.path("many", "results.h5")))
+        self.assertIn("columns go to results.csv alone", self.read("many", "run.log"))
         self.freeplay("run", "--resume", "many", "--end", "2 ms")
         self.assertFalse(os.path.exists(self.path("many", "results.h5")))
         _, err = self.freeplay("run", chain, "--set", "windows=800", "--end", "1 ms", "--channels", "body.*", "--out", "some")
