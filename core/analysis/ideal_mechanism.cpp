@@ -96,7 +96,7 @@ IdealMechanism::IdealMechanism(const Model& model, Platform platform)
 }
 
 bool IdealMechanism::is_angle(int input) const {
-  return model_->joints[at(platform_.inputs[at(input)])].ideal_layout.coordinate == Coordinate::angle;
+  return model_->joints[at(platform_.inputs[at(input)])].ideal_layout().coordinate == Coordinate::angle;
 }
 
 void IdealMechanism::find_plays() {
@@ -106,7 +106,7 @@ void IdealMechanism::find_plays() {
     for (const auto& [named, given] : model_->analysis.clearance) {
       if (named == j) radius = given;
     }
-    if (radius > 0.0 && joint.ideal_layout.constraint_rows > 0 && joint.gear < 0) add_play(j, radius);
+    if (radius > 0.0 && joint.ideal_layout().constraint_rows > 0 && joint.gear < 0) add_play(j, radius);
   }
 }
 

@@ -39,7 +39,7 @@ bool within_ways(std::span<const JointWay> ways, PostureSolver& solver, double t
   const Evaluation& e = solver.evaluate(t, posture, term_position);
   const Model& model = solver.mechanism().model();
   for (const JointWay& way : ways) {
-    const bool turns = model.joints[at(way.joint)].ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = model.joints[at(way.joint)].ideal_layout().coordinate == Coordinate::angle;
     const bool bounded = std::isfinite(way.lowest) && std::isfinite(way.highest);
     double place = e.coordinate[at(way.joint)];
     if (turns && bounded) place = within_way(place, way);

@@ -54,11 +54,11 @@ void choose_inputs(const Model& model, Platform& platform) {
                   fmt::format("joint '{}' has clearance, which leaves no coordinate to drive", joint.name), place,
                   "--ideal closes it");
     }
-    if (joint.ideal_layout.coordinate == Coordinate::none || joint.gear >= 0) {
+    if (joint.ideal_layout().coordinate == Coordinate::none || joint.gear >= 0) {
       throw Error(Error::Category::input, "wrong-type",
                   fmt::format("joint '{}' has no coordinate that could be driven", joint.name), place);
     }
-    if (model.analysis.input_is_length && joint.ideal_layout.coordinate == Coordinate::angle) {
+    if (model.analysis.input_is_length && joint.ideal_layout().coordinate == Coordinate::angle) {
       throw Error(Error::Category::input, "dimension-mismatch",
                   fmt::format("'analysis.error.input' is a length, but the input '{}' turns", joint.name),
                   model.analysis.input_location);

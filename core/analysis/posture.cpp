@@ -40,7 +40,7 @@ std::string Unreachable::text(const IdealMechanism& mechanism) const {
   if (contradiction) return "no posture has these inputs together";
   if (beyond >= 0) {
     const JointElement& joint = model.joints[at(beyond)];
-    const char* unit = joint.ideal_layout.coordinate == Coordinate::angle ? "rad" : "m";
+    const char* unit = joint.ideal_layout().coordinate == Coordinate::angle ? "rad" : "m";
     return fmt::format("{} '{}' would stand at {:.6g} {}, beyond the end of its way at {:.6g} {}",
                        joint.is_force ? "force" : "joint", joint.name, place, unit, end, unit);
   }

@@ -123,7 +123,7 @@ std::vector<Jet> inputs_of(const std::string& text, const Model& model, const st
     }
     const std::size_t i = static_cast<std::size_t>(found - names.begin());
     if (!std::isnan(values[i].value)) bad_value("--input", text, fmt::format("'{}' is given twice", name));
-    const bool angle = model.joints[static_cast<std::size_t>(inputs[i])].ideal_layout.coordinate == Coordinate::angle;
+    const bool angle = model.joints[static_cast<std::size_t>(inputs[i])].ideal_layout().coordinate == Coordinate::angle;
     values[i] = Jet::constant(
         signed_quantity("--input", trimmed(part.substr(sign + 1)), angle ? dimension::angle : dimension::length));
   }

@@ -138,7 +138,7 @@ void VelocityMapper::put_play(Group& group, std::size_t p, const Evaluation& e) 
   const int marker = second ? joint.marker_b : joint.marker_a;
   const Index first = kept_ + static_cast<Index>(group.inputs.size()) + group.play_columns[p];
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(e.markers[at(joint.marker_a)].rotation);
-  const bool slide = joint.ideal_layout.coordinate == Coordinate::position;
+  const bool slide = joint.ideal_layout().coordinate == Coordinate::position;
   const Eigen::Vector3d lever = Eigen::Map<const Eigen::Vector3d>(e.markers[at(joint.marker_a)].position) -
                                 Eigen::Map<const Eigen::Vector3d>(e.markers[at(joint.marker_b)].position);
   for (const JacobianBlock& block : system_.jacobian().blocks()) {

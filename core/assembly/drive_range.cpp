@@ -178,7 +178,7 @@ std::optional<std::string> closes_with(ClosedMechanism& mechanism, int joint, do
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
   StartBranches branches(mechanism, q);
   branches.search();
-  const Coordinate coordinate = model.joints[at(joint)].ideal_layout.coordinate;
+  const Coordinate coordinate = model.joints[at(joint)].ideal_layout().coordinate;
   const bool turns = coordinate == Coordinate::angle;
   double closed = 0.0, least = infinite;
   DriveRange range;

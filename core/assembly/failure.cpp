@@ -73,10 +73,10 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
     if (rows.lead[i] >= 0) {
       const JointElement& joint = model.joints[at(rows.lead[i])];
-      consider(
-          gap,
-          fmt::format("joint '{}' misses its start value by {}", joint.name, words(gap, joint.ideal_layout.coordinate)),
-          joint.location);
+      consider(gap,
+               fmt::format("joint '{}' misses its start value by {}", joint.name,
+                           words(gap, joint.ideal_layout().coordinate)),
+               joint.location);
     }
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
@@ -84,7 +84,7 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     if (r < 0 || !mechanism.held_row[at(r)]) continue;
     const double gap = std::abs(mechanism.e.phi[at(r)]);
     const Driver& driver = model.drivers[at(d)];
-    const Coordinate kind = model.joints[at(driver.joint)].ideal_layout.coordinate;
+    const Coordinate kind = model.joints[at(driver.joint)].ideal_layout().coordinate;
     consider(gap, fmt::format("driver '{}' misses its value by {}", driver.name, words(gap, kind)), driver.location);
   }
   // A gap of rounding says that there is a position, which the start does not lead to.

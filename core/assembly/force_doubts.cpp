@@ -147,7 +147,7 @@ class ForceDoubts {
     for (const int marker : {joint.marker_a, joint.marker_b}) {
       if (body_of(marker) != ground) mass = std::max(mass, model_.bodies[at(body_of(marker))].mass);
     }
-    const bool turns = joint.ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
     if (turns || !(stiffness > 0.0) || !(damping > most_damping * 2.0 * std::sqrt(stiffness * mass))) return;
     doubt_("doubtful-value",
            fmt::format("the damping of '{}' is {:.4g} N*s/m, {:.2g} times what keeps {:.4g} kg on its {:.4g} N/m from "
@@ -251,11 +251,11 @@ class ForceDoubts {
       if (joint.gear >= 0) return std::nullopt;
       if (is_force_element(joint) && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
       const double k = is_force_element(joint) && joint.parameters ? number(joint, "stiffness") : std::nan("");
-      if (is_force_element(joint) && k > 0.0 && joint.ideal_layout.coordinate != Coordinate::angle) {
+      if (is_force_element(joint) && k > 0.0 && joint.ideal_layout().coordinate != Coordinate::angle) {
         add_spring(hold, joint, k, body);
       } else if (is_force_element(joint) && (k == 0.0 || number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
-      } else if (joint.ideal_layout.coordinate == Coordinate::position && on_ground(joint) && driven_[at(j)] == 0) {
+      } else if (joint.ideal_layout().coordinate == Coordinate::position && on_ground(joint) && driven_[at(j)] == 0) {
         const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
         hold.along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
       } else {

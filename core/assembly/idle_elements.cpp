@@ -66,7 +66,7 @@ class Elements {
   std::optional<MatrixXd> rate_of(int j) const {
     const JointElement& element = model_.joints[at(j)];
     double row[12] = {}, bias = 0.0;
-    if (element.ideal_layout.coordinate != Coordinate::none) {
+    if (element.ideal_layout().coordinate != Coordinate::none) {
       system_.joints().coordinate_row(j, e_, row, bias);
     } else {
       const std::optional<Eigen::Vector3d> line = line_of(element);
@@ -97,7 +97,7 @@ class Elements {
       const JointElement& joint = model_.joints[at(i)];
       if (is_force_element(joint) || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
       if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
-      if (!acts_along_line(element) || joint.ideal_layout.pin == 0 || line_of(joint)) continue;
+      if (!acts_along_line(element) || joint.ideal_layout().pin == 0 || line_of(joint)) continue;
       const bool first = same_place(joint, element.marker_a), second = same_place(joint, element.marker_b);
       if (first && second ? has_free_length(element) : !first && !second) continue;
       doubt("idle-force",
@@ -128,7 +128,7 @@ class Elements {
 
   // What is a line between two points, and not what turns as well.
   static bool acts_along_line(const JointElement& element) {
-    return element.ideal_layout.coordinate == Coordinate::none && element.parameters->values.contains("free_length");
+    return element.ideal_layout().coordinate == Coordinate::none && element.parameters->values.contains("free_length");
   }
 
   // Where it is long it pushes in no direction, which is said elsewhere.
@@ -139,7 +139,7 @@ class Elements {
 
   /// A joint whose rows let the element not move where it stands; a line between two points turns, and may move later.
   bool leaves_nothing(int joint, const MatrixXd& rate, const JointElement& element) {
-    if (element.ideal_layout.coordinate == Coordinate::none) return false;
+    if (element.ideal_layout().coordinate == Coordinate::none) return false;
     const Slice slice = system_.layout().rows(joint);
     if (slice.size == 0) return false;
     const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
@@ -154,7 +154,7 @@ class Elements {
   }
 
   void say_idle(const JointElement& element, const JointElement& joint) {
-    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = element.ideal_layout().coordinate == Coordinate::angle;
     const std::string kind =
         element.parameters->values.contains("kind")
             ? fmt::format("write 'kind: {}' if that is meant, else ", turns ? "linear" : "rotational")
@@ -192,7 +192,7 @@ class Elements {
     const MatrixXd inertia = free.transpose() * mass.asDiagonal() * free;
     const double moved = 1.0 / along.dot(symmetric_solution(inertia, along));
     if (!(moved > 0.0 && moved < shortest * damping)) return;
-    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = element.ideal_layout().coordinate == Coordinate::angle;
     doubt("doubtful-value",
           fmt::format("the damping of '{}' is {:.4g} {}, which stops the {:.3g} {} that it works on in {:.2g} s, "
                       "faster than sound crosses it: check the number and its unit, or hold it by a joint",
@@ -211,10 +211,10 @@ class Elements {
   /// A start far beyond an end, where a stop pushes with all of its stiffness.
   void judge_ends(int j) {
     const JointElement& element = model_.joints[at(j)];
-    if (element.ideal_layout.coordinate == Coordinate::none) return;
+    if (element.ideal_layout().coordinate == Coordinate::none) return;
     const double lower = number(element, "lower"), upper = number(element, "upper"), here = e_.coordinate[at(j)];
     const double beyond = std::fmax(lower - here, here - upper);
-    const bool turns = element.ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = element.ideal_layout().coordinate == Coordinate::angle;
     const double most = std::max(most_beyond * (upper - lower), least_beyond * (turns ? 1.0 : system_.size()));
     if (!(std::isfinite(lower) && std::isfinite(upper) && beyond > most)) return;
     const char* unit = turns ? "rad" : "m";

@@ -156,7 +156,7 @@ class FreeMotions {
   }
 
   static bool acts_along_a_line(const JointElement& joint) {
-    return is_force_element(joint) && joint.ideal_layout.coordinate == Coordinate::none &&
+    return is_force_element(joint) && joint.ideal_layout().coordinate == Coordinate::none &&
            joint.parameters->values.contains("free_length");
   }
 
@@ -276,11 +276,11 @@ class FreeMotions {
       const JointElement& joint = model_.joints[at(j)];
       if (joint.gear >= 0) continue;
       const bool on_moving = is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b));
-      const bool spring = joint.is_force && joint.ideal_layout.coordinate == Coordinate::angle;
+      const bool spring = joint.is_force && joint.ideal_layout().coordinate == Coordinate::angle;
       if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
         given = stacked(given, coordinate_rate(j));
       }
-      const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+      const bool slides = joint.ideal_layout().coordinate == Coordinate::position;
       const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
       if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
       for (const int marker : {joint.marker_a, joint.marker_b}) {

@@ -69,7 +69,7 @@ class Guides {
 
  private:
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
-  bool is_guide(int j) const { return model_.joints[at(j)].ideal_layout.coordinate == Coordinate::position; }
+  bool is_guide(int j) const { return model_.joints[at(j)].ideal_layout().coordinate == Coordinate::position; }
 
   /// Joints with one freedom that no motion moves, and joints with none.
   bool stands_still(int j) const {
@@ -78,7 +78,7 @@ class Guides {
     const int width = system.layout().body_velocities(), rows = system.layout().rows(j).size;
     if (is_force_element(joint) || joint.gear >= 0 || rows < width - 1) return false;
     if (rows == width || motions_.cols() == 0) return true;
-    if (joint.ideal_layout.coordinate == Coordinate::none) return false;
+    if (joint.ideal_layout().coordinate == Coordinate::none) return false;
     double row[12] = {}, bias = 0.0;
     system.joints().coordinate_row(j, mechanism_.e, row, bias);
     VectorXd rate = VectorXd::Zero(motions_.cols());
@@ -186,7 +186,7 @@ bool is_moved(const Model& model, const JointElement& joint) {
 void doubt_guides(const System& system, const State& start, Structure& structure) {
   const Model& model = system.model();
   const auto is_guide = [](const JointElement& joint) {
-    return !is_force_element(joint) && joint.gear < 0 && joint.ideal_layout.coordinate == Coordinate::position;
+    return !is_force_element(joint) && joint.gear < 0 && joint.ideal_layout().coordinate == Coordinate::position;
   };
   if (static_cast<int>(model.bodies.size()) * (model.space == Space::planar ? 3 : 6) > most_followed_velocities) return;
   if (std::ranges::none_of(model.joints, is_guide)) return;

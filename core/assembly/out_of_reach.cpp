@@ -170,7 +170,7 @@ class Reach {
   }
 
   Coordinate coordinate(int driver) const {
-    return model_.joints[at(model_.drivers[at(driver)].joint)].ideal_layout.coordinate;
+    return model_.joints[at(model_.drivers[at(driver)].joint)].ideal_layout().coordinate;
   }
   double unit(int driver) const { return coordinate(driver) == Coordinate::angle ? 1.0 : mechanism_.system.size(); }
 

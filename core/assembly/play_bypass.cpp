@@ -170,7 +170,7 @@ class Bypasses {
   /// How many directions of the play the rows hold.
   int taken_by(const MatrixXd& rows, const MatrixXd& play, const JointElement& loose) const {
     const int own = rank_of(rows), shared = own + rank_of(play) - rank_of(stacked(rows, play));
-    if (shared == 0 || model_.space == Space::planar || loose.ideal_layout.coordinate != Coordinate::angle)
+    if (shared == 0 || model_.space == Space::planar || loose.ideal_layout().coordinate != Coordinate::angle)
       return shared;
     const double* r = shut_.markers[at(loose.marker_a)].rotation;
     MatrixXd axis = MatrixXd::Zero(1, 6);

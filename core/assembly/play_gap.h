@@ -20,7 +20,7 @@ inline Eigen::Vector3d play_gap(const JointElement& joint, Space space, const Ma
     return apart - axis.dot(apart) * axis;
   }
   if (space == Space::planar || joint.gear >= 0) return apart;
-  const JointFreedom freedom = joint_freedom(joint.ideal, joint.ideal_layout, a, b);
+  const JointFreedom freedom = joint_freedom(joint.ideal(), joint.ideal_layout(), a, b);
   return freedom.slides == 1 ? Eigen::Vector3d(apart - freedom.slide.dot(apart) * freedom.slide) : apart;
 }
 

@@ -24,7 +24,7 @@ struct Pin {
   BodyId other;
 };
 
-bool is_pin(const JointElement& joint) { return joint.ideal_layout.coordinate == Coordinate::angle; }
+bool is_pin(const JointElement& joint) { return joint.ideal_layout().coordinate == Coordinate::angle; }
 
 /// Across the axis of the first.
 double distance(const Model& model, const Marker& first, const Marker& second) {

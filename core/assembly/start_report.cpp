@@ -30,7 +30,7 @@ const JointElement* guide_on_ground(const System& closed, BodyId body) {
     const JointElement& joint = model.joints[at(j)];
     const BodyId a = model.markers[at(joint.marker_a)].body, b = model.markers[at(joint.marker_b)].body;
     if (joint.gear >= 0 || std::min(a, b) != ground || std::max(a, b) != body) continue;
-    const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+    const bool slides = joint.ideal_layout().coordinate == Coordinate::position;
     const int rows = closed.layout().rows(j).size;
     if (model.space == Space::planar ? rows == 3 || (rows == 2 && slides) : rows == 6 || (rows == 5 && slides))
       return &joint;
@@ -193,7 +193,7 @@ std::string sentence(const Model& model, const ChosenSpeed& chosen) {
         model.bodies[at(chosen.body)].name, chosen.speed, chosen.angular_speed);
   }
   const JointElement& joint = model.joints[at(chosen.joint)];
-  const bool turns = joint.ideal_layout.coordinate == Coordinate::angle;
+  const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
   return fmt::format("joint '{}' starts at {:.4g} {} by least kinetic energy: the file leaves its speed open",
                      joint.name, chosen.speed, turns ? "rad/s" : "m/s");
 }

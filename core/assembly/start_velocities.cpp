@@ -223,7 +223,7 @@ class Velocities {
     std::vector<ClosedMechanism::Lead> joints;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& joint = model_.joints[at(j)];
-      if (is_force_element(joint) || joint.gear >= 0 || joint.ideal_layout.coordinate == Coordinate::none) continue;
+      if (is_force_element(joint) || joint.gear >= 0 || joint.ideal_layout().coordinate == Coordinate::none) continue;
       joints.push_back({j, 0.0});
     }
     const ClosedMechanism::Rows rows = mechanism_.speed_rows(joints);
@@ -235,7 +235,7 @@ class Velocities {
       if (rows.lead[i] < 0) continue;
       of_joints.push_back(index);
       if ((all.row(index) * free).norm() <= kept_part * all.row(index).norm()) continue;
-      const bool turns = model_.joints[at(rows.lead[i])].ideal_layout.coordinate == Coordinate::angle;
+      const bool turns = model_.joints[at(rows.lead[i])].ideal_layout().coordinate == Coordinate::angle;
       if (std::abs(rows.residual[index]) <= least_speed(turns)) continue;
       out.push_back({.joint = rows.lead[i], .speed = rows.residual[index]});
     }

@@ -193,7 +193,7 @@ class Examination {
       Eigen::Vector3d apart = play_gap(joint, model_.space, a, b);
       // The axis of a pin in space, z of the first marker, does not count.
       const bool slide = plays_between_walls(joint.layout);
-      const bool pin = model_.space == Space::spatial && joint.ideal_layout.coordinate == Coordinate::angle;
+      const bool pin = model_.space == Space::spatial && joint.ideal_layout().coordinate == Coordinate::angle;
       const Eigen::Vector3d axis(a.rotation[2], a.rotation[5], a.rotation[8]);
       if (pin) apart -= axis.dot(apart) * axis;
       const double eccentricity = apart.norm();

@@ -186,7 +186,7 @@ void add_gears(const RunRecord& record, TextTable& table) {
   const PeakValues& peaks = record.statistics.largest().places();
   for (const Gear& gear : record.model.gears) {
     const JointElement& second = record.model.joints[static_cast<std::size_t>(gear.second)];
-    const bool turns = second.ideal_layout.coordinate == Coordinate::angle;
+    const bool turns = second.ideal_layout().coordinate == Coordinate::angle;
     const JointStatistics seen = record.statistics.joint(gear.joint);
     const JointElement& element = record.model.joints[static_cast<std::size_t>(gear.joint)];
     const std::string& name = element.name;

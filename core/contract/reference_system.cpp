@@ -47,9 +47,8 @@ template <class J>
 JointElement element(const J& joint) {
   JointElement element;
   element.name = "held";
-  element.joint = element.ideal = JointRef(abi::joint_table<J>, &joint);
+  element.joint = JointRef(abi::joint_table<J>, &joint);
   joint.declare(element.layout);
-  element.ideal_layout = element.layout;
   element.marker_a = 0;
   element.marker_b = 1;
   return element;

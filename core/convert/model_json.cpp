@@ -49,7 +49,7 @@ std::string unit_text(const Parameter& parameter, const ParameterBlock& block) {
 }
 
 const char* coordinate_unit(const JointElement& joint) {
-  return joint.ideal_layout.coordinate == Coordinate::position ? "m" : "rad";
+  return joint.ideal_layout().coordinate == Coordinate::position ? "m" : "rad";
 }
 
 class ModelWriter {
@@ -295,7 +295,7 @@ class ModelWriter {
   const char* effort_unit(const Driver& one) const {
     constexpr const char* units[] = {"rad", "m", "", "N*m", "N"};
     if (one.kind != DriverKind::velocity) return units[static_cast<int>(one.kind)];
-    return model_.joints[at(one.joint)].ideal_layout.coordinate == Coordinate::position ? "m/s" : "rad/s";
+    return model_.joints[at(one.joint)].ideal_layout().coordinate == Coordinate::position ? "m/s" : "rad/s";
   }
 
   Json path(const InverseKinematics& one) const {

@@ -305,7 +305,7 @@ class MechanismDrawing {
     const Marker &a = marker(joint.marker_a), &b = marker(joint.marker_b);
     const svg::Point from = page(world(a)), to = page(world(b));
     const bool apart = length(to - from) > 6.0;
-    const bool slides = joint.ideal_layout.coordinate == Coordinate::position;
+    const bool slides = joint.ideal_layout().coordinate == Coordinate::position;
     for (const auto& [one, at] : {std::pair(&a, from), std::pair(&b, to)}) {
       if (one->body == ground && !(slides && one == &a && apart)) out_.hatch(at);
     }
@@ -328,7 +328,7 @@ class MechanismDrawing {
       draw_outlines(joint, "curve");
       draw_pin(joint, to);
       out_.label(joint.name, to, "");
-    } else if (apart && joint.ideal_layout.constraint_rows == 1) {
+    } else if (apart && joint.ideal_layout().constraint_rows == 1) {
       out_.line(from, to, "stroke=\"black\" stroke-width=\"2\" stroke-dasharray=\"6 3\"");
       out_.label(joint.name, 0.5 * (from + to), "");
     } else {
@@ -357,7 +357,7 @@ class MechanismDrawing {
 
   bool turns(int joint) const {
     const JointElement& one = model_.joints[static_cast<std::size_t>(joint)];
-    return one.gear < 0 && one.ideal_layout.coordinate == Coordinate::angle;
+    return one.gear < 0 && one.ideal_layout().coordinate == Coordinate::angle;
   }
 
   /// Where a joint moves its second body.
@@ -368,7 +368,7 @@ class MechanismDrawing {
   }
 
   void draw_pin(const JointElement& joint, const svg::Point& at) {
-    if (joint.ideal_layout.coordinate == Coordinate::angle) {
+    if (joint.ideal_layout().coordinate == Coordinate::angle) {
       if (joint.has_play) out_.circle(at, 9.0, "fill=\"none\" stroke=\"#cc3311\" stroke-width=\"1.5\"");
       out_.circle(at, 5.5, "fill=\"white\" stroke=\"black\" stroke-width=\"1.5\"");
       return;

@@ -270,7 +270,7 @@ class SpatialDrawing {
       }
       return name(one.name, 0.5 * (from + to), "font-style=\"italic\"");
     }
-    if (one.ideal_layout.constraint_rows == 1 && (scene_.world(a) - scene_.world(b)).norm() > 1e-6 * scene_.reach()) {
+    if (one.ideal_layout().constraint_rows == 1 && (scene_.world(a) - scene_.world(b)).norm() > 1e-6 * scene_.reach()) {
       page_.line(from, to, "stroke=\"black\" stroke-width=\"2\" stroke-dasharray=\"6 3\"");
       return name(one.name, 0.5 * (from + to), "");
     }

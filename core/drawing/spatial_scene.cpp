@@ -16,9 +16,9 @@ SpatialScene::SpatialScene(const System& system, std::span<const double> q)
   for (std::size_t b = 0; b < model_.bodies.size(); ++b)
     poses_.push_back(system.coordinates().frame_pose(static_cast<BodyId>(b), q));
   for (const JointElement& one : model_.joints) {
-    freedoms_.push_back(
-        one.gear >= 0 ? JointFreedom{}
-                      : joint_freedom(one.ideal, one.ideal_layout, kinematics(one.marker_a), kinematics(one.marker_b)));
+    freedoms_.push_back(one.gear >= 0 ? JointFreedom{}
+                                      : joint_freedom(one.ideal(), one.ideal_layout(), kinematics(one.marker_a),
+                                                      kinematics(one.marker_b)));
   }
   markers_.resize(model_.bodies.size());
   for (std::size_t i = 0; i < model_.markers.size(); ++i) {

@@ -46,7 +46,7 @@ void read_ends(Draft& draft, const CheckedValue& entry, const std::vector<Checke
   for (const int j : joints) {
     const std::size_t joint = static_cast<std::size_t>(j);
     if (!draft.joint_usable[joint]) return;
-    const Coordinate coordinate = draft.model.joints[joint].ideal_layout.coordinate;
+    const Coordinate coordinate = draft.model.joints[joint].ideal_layout().coordinate;
     if (coordinate == Coordinate::none || draft.model.joints[joint].gear >= 0) continue;
     some = true;
     const Dimension& dimension = coordinate == Coordinate::angle ? dimension::angle : dimension::length;

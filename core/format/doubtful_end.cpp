@@ -44,7 +44,8 @@ double turns_of(const Driver& driver, const Model& model) {
   }
   // A sine of this range and rate has this many periods.
   if (reversals >= fewest_reversals) return speeds ? 0.0 : fastest / (0.5 * (high - low)) * span / (2.0 * M_PI);
-  const bool turns = model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate == Coordinate::angle;
+  const bool turns =
+      model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout().coordinate == Coordinate::angle;
   if (reversals > 0 || !turns || !prescribes(driver.kind)) return 0.0;
   return std::abs(sum) / (looks + 1) * span / (2.0 * M_PI);
 }

@@ -41,7 +41,7 @@ class GearDoubts {
 
  private:
   const JointElement& joint(int j) const { return model_.joints[static_cast<std::size_t>(j)]; }
-  bool turns(int j) const { return joint(j).ideal_layout.coordinate == Coordinate::angle; }
+  bool turns(int j) const { return joint(j).ideal_layout().coordinate == Coordinate::angle; }
 
   /// Of driven joints, and of what is geared to them.
   void find_travels() {

@@ -52,7 +52,7 @@ class MotionDoubts {
   explicit MotionDoubts(const Draft& draft) : draft_(draft), settings_(draft.model.settings) {}
 
   void judge(const Driver& driver) const {
-    const Coordinate coordinate = draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate;
+    const Coordinate coordinate = draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout().coordinate;
     const Course course = course_of(driver.value, settings_);
     if (!course.known) return;
     const auto written = key_of(driver, "value");
@@ -126,7 +126,7 @@ class MotionDoubts {
   }
 
   Coordinate coordinate(const Driver& driver) const {
-    return draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout.coordinate;
+    return draft_.model.joints[static_cast<std::size_t>(driver.joint)].ideal_layout().coordinate;
   }
 
   /// A speed that no machine has, be its unit written or not. True after a message.

@@ -91,7 +91,7 @@ class DriverEntry {
     if (word && value && (!joint || !usable(*joint))) return read_alone(*value, static_cast<DriverKind>(*word));
     if (!joint || !usable(*joint) || !word) return;
     const DriverKind kind = static_cast<DriverKind>(*word);
-    const Coordinate coordinate = element(*joint).ideal_layout.coordinate;
+    const Coordinate coordinate = element(*joint).ideal_layout().coordinate;
     if (!fits(kind, coordinate)) {
       return kind_value->fail("wrong-type", "joint '" + element(*joint).name + "' is driven by " +
                                                 either(kinds_for(coordinate)) + ", not by '" +
@@ -180,12 +180,12 @@ class DriverEntry {
     for (const Gear& gear : draft_.model.gears)
       if (gear.joint == joint)
         return "drive '" + element(gear.first).name + "' or '" + element(gear.second).name + "', which it ties";
-    return coordinate_hint(*element(joint).ideal_component);
+    return coordinate_hint(*element(joint).ideal_component());
   }
 
   /// Has the joint a coordinate of its own? Reports at `clearance_place` or `place` when not.
   bool may_be_driven(int joint, const CheckedValue& place, const CheckedValue& clearance_place) const {
-    if (element(joint).ideal_layout.coordinate == Coordinate::none) {
+    if (element(joint).ideal_layout().coordinate == Coordinate::none) {
       place.fail("wrong-type", "joint '" + element(joint).name + "' has no coordinate that could be driven", {},
                  remedy_of(joint));
       return false;
@@ -267,7 +267,7 @@ class DriverEntry {
     driver.location = place;
     driver.joint = joint;
     driver.kind =
-        element(joint).ideal_layout.coordinate == Coordinate::angle ? DriverKind::angle : DriverKind::position;
+        element(joint).ideal_layout().coordinate == Coordinate::angle ? DriverKind::angle : DriverKind::position;
     driver.kinematics = static_cast<int>(draft_.model.kinematics.size());
     driver.elbow = mode;
     driver.elbow_given = mode_given;

@@ -78,11 +78,11 @@ class GearEntry {
 
   const JointElement& element(int joint) const { return draft_.model.joints[static_cast<std::size_t>(joint)]; }
   Dimension dimension_of(int joint) const {
-    return element(joint).ideal_layout.coordinate == Coordinate::angle ? dimension::angle : dimension::length;
+    return element(joint).ideal_layout().coordinate == Coordinate::angle ? dimension::angle : dimension::length;
   }
 
   void judge_offset(const CheckedValue& written, const Gear& gear) const {
-    if (element(gear.second).ideal_layout.coordinate == Coordinate::angle) {
+    if (element(gear.second).ideal_layout().coordinate == Coordinate::angle) {
       doubt_angle(written, *gear.offset);
     } else {
       doubt_start_length(written, *gear.offset, draft_.length_scale);
@@ -107,9 +107,9 @@ class GearEntry {
   std::optional<int> coordinate_of(const CheckedValue& value) const {
     const std::optional<int> joint = draft_.joint(value, part_);
     if (!joint || !draft_.joint_usable[static_cast<std::size_t>(*joint)]) return std::nullopt;
-    if (element(*joint).ideal_layout.coordinate != Coordinate::none) return joint;
+    if (element(*joint).ideal_layout().coordinate != Coordinate::none) return joint;
     value.fail("wrong-type", "joint '" + element(*joint).name + "' has no coordinate that a gear could couple", {},
-               coordinate_hint(*element(*joint).ideal_component));
+               coordinate_hint(*element(*joint).ideal_component()));
     return std::nullopt;
   }
 
@@ -123,10 +123,9 @@ class GearEntry {
 }  // namespace
 
 void make_gear(JointElement& element) {
-  element.component = element.ideal_component = &gear_component;
-  element.joint = element.ideal = JointRef(abi::joint_table<CoordinateGear>, &shared_gear);
+  element.component = &gear_component;
+  element.joint = JointRef(abi::joint_table<CoordinateGear>, &shared_gear);
   shared_gear.declare(element.layout);
-  element.ideal_layout = element.layout;
 }
 
 void add_gears(Draft& draft, const Part& part) {

@@ -38,7 +38,7 @@ class TeethFault {
     if (!turns(first_) && !turns(second_)) return "needs a wheel: both joints slide";
     for (const JointElement* one : {&first_, &second_}) {
       const char* const needed = turns(*one) ? "a wheel whose axle is held" : "a rack that does not turn";
-      if (one->ideal_layout.constraint_rows != 2) return needs(needed, *one);
+      if (one->ideal_layout().constraint_rows != 2) return needs(needed, *one);
       if (one->has_play) return needs("bearings without play", *one);
     }
     const std::optional<BodyId> carrier = carrier_of(model_, gear_);
@@ -68,7 +68,7 @@ class TeethFault {
   }
 
  private:
-  static bool turns(const JointElement& one) { return one.ideal_layout.coordinate == Coordinate::angle; }
+  static bool turns(const JointElement& one) { return one.ideal_layout().coordinate == Coordinate::angle; }
   static std::string needs(const std::string& what, const JointElement& joint) {
     return "needs " + what + ", but '" + joint.name + (joint.has_play ? "' has play" : "' leaves it free");
   }

@@ -33,10 +33,10 @@ void read_start_value(Draft& draft, const CheckedValue& value, StartKind what) {
   const std::size_t index = static_cast<std::size_t>(*joint);
   if (!draft.joint_usable[index]) return;
   JointElement& element = draft.model.joints[index];
-  const Coordinate coordinate = element.ideal_layout.coordinate;
+  const Coordinate coordinate = element.ideal_layout().coordinate;
   if (coordinate == Coordinate::none) {
     return value.fail_at_key("wrong-type", "joint '" + name + "' has no coordinate that could have a start value", {},
-                             coordinate_hint(*element.ideal_component));
+                             coordinate_hint(*element.ideal_component()));
   }
   const std::optional<double> number = value.quantity(dimension_of(coordinate, what));
   if (is_prescribed(draft, *joint, what)) {

@@ -37,7 +37,7 @@ class Chain {
       draft_.model.joints[at] = part;
     }
     if (coordinate > 0) draft_.joints.also(whole.name, coordinate == 1 ? made : made + 1);
-    const std::string hint = coordinate_hint(*whole.ideal_component);
+    const std::string hint = coordinate_hint(*whole.ideal_component());
     draft_.divided[whole.name] = "name '" + first + "' or '" + second + "'" + (hint.empty() ? hint : ", or " + hint);
     return good;
   }
@@ -92,19 +92,23 @@ class Chain {
     turn(part, loose->description.axis, element);
     const CheckedParameters own{block_of(*loose), parameters_.places, parameters_.fields};
     const CheckedParameters closed{block_of(*ideal), parameters_.places, parameters_.fields};
-    if (!make_joint(draft_, closed, entry_, element.ideal, element.ideal_layout)) return false;
-    if (!make_joint(draft_, own, entry_, element.joint, element.layout)) return false;
+    IdealTwin twin{.component = ideal, .joint = {}, .layout = {}};
+    if (!make_joint(draft_, closed, entry_, twin.joint, twin.layout)) return false;
+    JointRef joint;
+    JointLayout layout;
+    if (!make_joint(draft_, own, entry_, joint, layout)) return false;
     element.parameters = std::make_shared<const ParameterBlock>(*own.block);
-    element.component = loose;
-    element.ideal_component = ideal;
     // Both, as each may be meant by a pattern of its own.
     const bool by_whole = is_made_ideal(draft_, whole), by_part = is_made_ideal(draft_, element.name);
     element.has_play = !by_whole && !by_part;
-    if (element.has_play) return true;
-    draft_.model.ideal.push_back(element.name);
-    element.component = ideal;
-    element.joint = element.ideal;
-    element.layout = element.ideal_layout;
+    element.component = element.has_play ? loose : ideal;
+    element.joint = element.has_play ? joint : twin.joint;
+    element.layout = element.has_play ? layout : twin.layout;
+    if (element.has_play) {
+      element.twin = std::make_shared<const IdealTwin>(std::move(twin));
+    } else {
+      draft_.model.ideal.push_back(element.name);
+    }
     return true;
   }
 

@@ -187,7 +187,7 @@ class JointEntry {
   // --- components ------------------------------------------------------------------------------------------------
 
   void create() {
-    JointRef joint, ideal;
+    IdealTwin ideal{.component = ideal_, .joint = {}, .layout = {}};
     std::vector<MotionChannel> channels;
     const MotionNames names(draft_, part_, channels);
     MotionParameters motion(names);
@@ -195,16 +195,16 @@ class JointEntry {
         check_parameters(*ideal_, map_, draft_, element().is_force ? &motion : nullptr);
     if (ideal_parameters.block) motion.give(*ideal_parameters.block, channels, element());
     const bool twins = ideal_ != component_;
-    const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal, element().ideal_layout);
+    const bool usable = make_joint(draft_, ideal_parameters, entry_, ideal.joint, ideal.layout);
     if (component_->description.chain != nullptr && !element().is_force) {
-      element().component = element().ideal_component = ideal_;
-      element().joint = element().ideal = ideal;
-      element().layout = element().ideal_layout;
+      element().component = ideal_;
+      element().joint = ideal.joint;
+      element().layout = ideal.layout;
       if (usable && known_) create_chain(*ideal_parameters.block);
       return;
     }
-    JointLayout layout = element().ideal_layout;
-    joint = ideal;
+    JointRef joint = ideal.joint;
+    JointLayout layout = ideal.layout;
     const CheckedParameters parameters = twins ? check_parameters(*component_, map_, draft_) : ideal_parameters;
     if (twins) make_joint(draft_, parameters, entry_, joint, layout);
     if (parameters.block) {
@@ -214,12 +214,11 @@ class JointEntry {
     if (parameters.block) element().parameters = std::make_shared<const ParameterBlock>(*parameters.block);
     const bool play = twins && !is_made_ideal(draft_, element().name);
     if (twins && !play) draft_.model.ideal.push_back(element().name);
-    element().ideal_component = ideal_;
-    element().ideal = ideal;
     element().component = play ? component_ : ideal_;
-    element().joint = play ? joint : ideal;
-    element().layout = play ? layout : element().ideal_layout;
+    element().joint = play ? joint : ideal.joint;
+    element().layout = play ? layout : ideal.layout;
     element().has_play = play;
+    if (play) element().twin = std::make_shared<const IdealTwin>(std::move(ideal));
     if (twins) doubt_play(layout);
     if (twins && parameters.block) doubt_inside(parameters, layout);
     if (parameters.block) doubt_contact_stiffness(entry_, *parameters.block, layout, draft_.length_scale);

@@ -56,6 +56,7 @@ class LooseGear {
       draft_.model.ideal.push_back(element.name);
       return;
     }
+    element.twin = std::make_shared<const IdealTwin>(IdealTwin{element.component, element.joint, element.layout});
     element.component = made.block->component;
     element.joint = joint;
     element.layout = layout;
@@ -70,7 +71,7 @@ class LooseGear {
 
   bool find_wheels() {
     for (const int j : {gear_.first, gear_.second}) {
-      if (joint(j).ideal_layout.coordinate == Coordinate::angle) continue;
+      if (joint(j).ideal_layout().coordinate == Coordinate::angle) continue;
       return refuse(fmt::format("'{}' slides: teeth with play join two wheels that turn", joint(j).name),
                     "leave the play out, or couple two joints that turn");
     }

@@ -45,7 +45,8 @@ void warn_of_idle_links(const Draft& draft) {
     for (const int index : {joint.marker_a, joint.marker_b}) {
       if (at(index).body == ground) continue;
       Link& link = links[static_cast<std::size_t>(at(index).body)];
-      const bool pin = joint.gear < 0 && !is_force_element(joint) && joint.ideal_layout.coordinate == Coordinate::angle;
+      const bool pin =
+          joint.gear < 0 && !is_force_element(joint) && joint.ideal_layout().coordinate == Coordinate::angle;
       link.idle = link.idle && pin && (link.marker < 0 || link.marker == index);
       link.marker = index;
       link.pins.push_back(&joint);

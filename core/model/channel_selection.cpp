@@ -31,6 +31,7 @@ std::vector<std::size_t> select_channels(const Channels& channels, std::span<con
     const bool wanted = names.contains(name) || std::ranges::any_of(stars, fits);
     if (static_cast<int>(i) == channels.time || wanted) selected.push_back(i);
   }
+  selected.shrink_to_fit();  // of hundreds of thousands of columns
   return selected;
 }
 

@@ -7,7 +7,7 @@ namespace freeplay {
 
 /// An entry of `forces`, or one of `joints` whose type has no rows and no play.
 inline bool is_force_element(const JointElement& joint) {
-  return joint.is_force || (joint.gear < 0 && !joint.has_play && joint.ideal_layout.constraint_rows == 0);
+  return joint.is_force || (joint.gear < 0 && !joint.has_play && joint.ideal_layout().constraint_rows == 0);
 }
 
 }  // namespace freeplay

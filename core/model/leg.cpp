@@ -11,7 +11,7 @@ struct OtherEnd {
   int near = 0, far = 0;  // markers on the body asked for and on the other
 };
 
-bool ties(const JointElement& joint) { return joint.ideal_layout.constraint_rows > 0; }
+bool ties(const JointElement& joint) { return joint.ideal_layout().constraint_rows > 0; }
 
 // The only joint of `body` besides `known`, force elements left out; joint -1 when there is not exactly one.
 OtherEnd only_other_joint(const Model& model, BodyId body, int known) {
@@ -39,7 +39,7 @@ Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y};
 std::optional<LegChain> find_leg_chain(const Model& model, int driven, int frame) {
   if (model.space == Space::spatial) return std::nullopt;
   const auto body_of = [&](int m) { return model.markers[static_cast<std::size_t>(m)].body; };
-  const auto is_pin = [&](int j) { return model.joints[static_cast<std::size_t>(j)].ideal_layout.pin != 0; };
+  const auto is_pin = [&](int j) { return model.joints[static_cast<std::size_t>(j)].ideal_layout().pin != 0; };
 
   const JointElement& a = model.joints[static_cast<std::size_t>(driven)];
   const BodyId base = body_of(a.marker_a), crank = body_of(a.marker_b), platform = body_of(frame);

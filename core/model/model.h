@@ -64,6 +64,13 @@ struct FormulaPlace {
   bool verbatim = false;
 };
 
+/// What a joint with play becomes without it.
+struct IdealTwin {
+  const Component* component = nullptr;
+  JointRef joint;
+  JointLayout layout;
+};
+
 /// A joint or a force between two markers; a gear has rows but no markers of its own.
 struct JointElement {
   std::string name;
@@ -73,18 +80,19 @@ struct JointElement {
   JointLayout layout;
   int marker_a = 0, marker_b = 0;                    ///< indices into Model::markers
   std::shared_ptr<const ParameterBlock> parameters;  ///< the parameters of the type that is written; null for a gear
-  MotionFormulas by_motion;          ///< of all its parameters that may depend on the motion, where one does
-  std::vector<FormulaPlace> places;  ///< of these
-  std::vector<Expression> in_time;   ///< parts of them that depend on time alone
-  // The ideal twin of a joint with play; equal to the above for all others.
-  const Component* ideal_component = nullptr;
-  JointRef ideal;
-  JointLayout ideal_layout;
+  MotionFormulas by_motion;               ///< of all its parameters that may depend on the motion, where one does
+  std::vector<FormulaPlace> places;       ///< of these
+  std::vector<Expression> in_time;        ///< parts of them that depend on time alone
+  std::shared_ptr<const IdealTwin> twin;  ///< of a joint with play; all others are their own
   bool has_play = false;
   bool is_force = false;        ///< an entry of `forces`
   int gear = -1;                ///< index into Model::gears
   std::optional<Vector3> axis;  ///< as given, made a unit vector; the markers are turned already
   std::optional<StartValue> start_coordinate, start_speed;
+
+  const Component* ideal_component() const { return twin ? twin->component : component; }
+  const JointRef& ideal() const { return twin ? twin->joint : joint; }
+  const JointLayout& ideal_layout() const { return twin ? twin->layout : layout; }
 };
 
 /// coordinate(second) = ratio coordinate(first) + offset.

@@ -21,10 +21,10 @@ const char* symbol(const JointElement& joint, bool planar) {
   if (joint.is_force || (joint.layout.constraint_rows == 0 && !joint.has_play)) {
     return joint.layout.coordinate == Coordinate::none ? "tie" : "force";
   }
-  if (joint.ideal_layout.coordinate == Coordinate::position) return "slide";
-  if (joint.ideal_layout.coordinate == Coordinate::angle) return "turn";
-  if (joint.ideal_layout.constraint_rows == 1) return "rod";
-  return joint.ideal_layout.constraint_rows == (planar ? 3 : 6) ? "weld" : "turn";
+  if (joint.ideal_layout().coordinate == Coordinate::position) return "slide";
+  if (joint.ideal_layout().coordinate == Coordinate::angle) return "turn";
+  if (joint.ideal_layout().constraint_rows == 1) return "rod";
+  return joint.ideal_layout().constraint_rows == (planar ? 3 : 6) ? "weld" : "turn";
 }
 
 }  // namespace

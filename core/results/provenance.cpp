@@ -30,7 +30,7 @@ void add_types(const ParameterBlock& block, std::set<const Component*>& types) {
 std::set<const Component*> types_of(const Model& model) {
   std::set<const Component*> types;
   for (const JointElement& joint : model.joints) {
-    types.insert({joint.component, joint.ideal_component});
+    types.insert({joint.component, joint.ideal_component()});
     if (joint.parameters != nullptr) add_types(*joint.parameters, types);
   }
   add_types(model.settings.integrator_parameters, types);

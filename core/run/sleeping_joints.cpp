@@ -18,11 +18,11 @@ constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 SleepingJoints::SleepingJoints(const Joints& joints, const Forces& forces, EvaluationContext& context)
     : joints_(joints), context_(context) {
-  context.sleeps.resize(at(joints.count()));
   const std::span<const ForceBlock> blocks = forces.blocks();
   for (int f = 0; f < static_cast<int>(blocks.size()); ++f) {
     const int j = blocks[at(f)].joint;
     if (blocks[at(f)].internal != 0) continue;
+    context.sleeps.resize(std::max(context.sleeps.size(), at(j) + 1));
     candidates_.push_back({j, f, joints[j].marker_a, joints[j].marker_b});
     const JointLayout& layout = joints.layout(j);
     Sleep& sleep = context.sleeps[at(j)];

@@ -13,7 +13,7 @@ namespace freeplay {
 struct EvaluationContext {
   double per_contact = 0.0;     ///< JointInput::per_contact
   Profile* profile = nullptr;   ///< where the time of the run is counted, or null
-  std::vector<Sleep> sleeps{};  ///< by joint; a run decides which joints sleep (run/sleeping_joints.h)
+  std::vector<Sleep> sleeps{};  ///< by joint, to the last that may; a run decides which (run/sleeping_joints.h)
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

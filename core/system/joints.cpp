@@ -70,8 +70,8 @@ Joints::Joints(const Model& model, Variant variant, const Layout& layout, const 
   for (int j = 0; j < static_cast<int>(records_.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
     JointRecord& r = records_[at(j)];
-    r.joint = closed ? element.ideal : element.joint;
-    r.layout = closed ? &element.ideal_layout : &element.layout;
+    r.joint = closed ? element.ideal() : element.joint;
+    r.layout = closed ? &element.ideal_layout() : &element.layout;
     r.index = j;
     r.marker_a = element.marker_a;
     r.marker_b = element.marker_b;

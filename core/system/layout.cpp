@@ -34,7 +34,7 @@ Layout::Layout(const Model& model, Variant variant, std::span<const planar::Driv
   const auto take_rows = [&](bool held) {
     for (std::size_t j = 0; j < joints_.size(); ++j) {
       const JointElement& joint = model.joints[j];
-      const JointLayout& layout = variant == Variant::closed ? joint.ideal_layout : joint.layout;
+      const JointLayout& layout = variant == Variant::closed ? joint.ideal_layout() : joint.layout;
       if ((holds[j] != 0) == held) joints_[j].rows = take(all_rows_, layout.constraint_rows);
     }
     if (!held) first_driver_row_ = all_rows_;
@@ -47,7 +47,7 @@ Layout::Layout(const Model& model, Variant variant, std::span<const planar::Driv
   take_rows(true);
   for (std::size_t j = 0; j < joints_.size(); ++j) {
     const JointElement& joint = model.joints[j];
-    const JointLayout& layout = variant == Variant::closed ? joint.ideal_layout : joint.layout;
+    const JointLayout& layout = variant == Variant::closed ? joint.ideal_layout() : joint.layout;
     joints_[j].internal = take(nz_, layout.internal_variables);
     joints_[j].history = take(nh_, layout.history);
     if (layout.coordinate == Coordinate::angle) joints_[j].turn = take(nh_, 1).offset;

@@ -44,7 +44,7 @@ ToothLoad tooth_load(const PlanePoint& pitch_point, const PlanePoint& direction,
 std::array<ToothWrench, 3> tooth_wrenches(const System& system, const Gear& gear, const Evaluation& e,
                                           std::span<const double> lambda) {
   const Model& model = system.model();
-  const auto turns = [&](int joint) { return model.joints[at(joint)].ideal_layout.coordinate == Coordinate::angle; };
+  const auto turns = [&](int joint) { return model.joints[at(joint)].ideal_layout().coordinate == Coordinate::angle; };
   const bool b_is_second = turns(gear.first);
   const BodyId carrier = carrier_of(model, gear).value_or(ground);
   const Holder a = holder(model, b_is_second ? gear.first : gear.second, carrier),

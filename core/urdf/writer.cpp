@@ -83,12 +83,12 @@ class UrdfWriter {
   }
 
   static bool is_geometric(const JointElement& joint) {
-    if (joint.gear >= 0 || joint.is_force || joint.ideal_component == nullptr) return false;
-    const std::string_view type = joint.ideal_component->description.name;
+    if (joint.gear >= 0 || joint.is_force || joint.ideal_component() == nullptr) return false;
+    const std::string_view type = joint.ideal_component()->description.name;
     return type == "revolute" || type == "prismatic" || type == "fixed";
   }
   static bool slides(const JointElement& joint) {
-    return std::string_view(joint.ideal_component->description.name) == "prismatic";
+    return std::string_view(joint.ideal_component()->description.name) == "prismatic";
   }
 
   /// A body's frame moves to the second frame of its joint of the tree.
@@ -207,7 +207,7 @@ class UrdfWriter {
     const JointElement& joint = model_.joints[at(tree_joint_[at(child)])];
     const BodyId parent = first(joint).body;
     const double along = second(joint).angle;
-    const std::string_view type = joint.ideal_component->description.name;
+    const std::string_view type = joint.ideal_component()->description.name;
     open_joint(xml, joint.name, type == "revolute" ? "continuous" : std::string(type),
                parent == ground ? "ground" : model_.bodies[at(parent)].name, child, origin(joint));
     if (type == "revolute") xml.element("axis", {{"xyz", "0 0 1"}});

@@ -16,9 +16,9 @@ TEST(JointTwins, ABlockMakesTheTypeItsTwin) {
   const JointElement& joint = built.model->joints[0];
   EXPECT_TRUE(joint.has_play);
   EXPECT_STREQ(joint.component->description.name, "loose-pin");
-  EXPECT_STREQ(joint.ideal_component->description.name, "pin");
+  EXPECT_STREQ(joint.ideal_component()->description.name, "pin");
   EXPECT_DOUBLE_EQ(joint.layout.clearance, 1e-3);
-  EXPECT_EQ(joint.ideal_layout.constraint_rows, 2);
+  EXPECT_EQ(joint.ideal_layout().constraint_rows, 2);
   EXPECT_EQ(built.model->clearance_joints(), 1);
 }
 
