@@ -75,7 +75,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       sleeping(system.joints(), system.forces(), evaluations),
       kinks(model),
       idle_loads(system),
-      watch(system, all_channels),
+      watch(system, all_channels, adaptive),
       inner(at(system.layout().nv()), at(system.layout().nz() + flows)),
       z_rate(at(system.layout().nz() + flows)) {
   if (adaptive) {

@@ -40,9 +40,9 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       storm_(run.model.joints.size() + 1, storm_limits(run.settings, run.adaptive)),
       feed_(run.channels.time, run.channels.all().size()),
       row_(run.channels.all().size(), 0.0),
-      row_between_(row_.size(), 0.0),
-      row_middle_(row_.size(), 0.0),
-      row_aside_(run.adaptive ? row_.size() : 0, 0.0),
+      row_between_(run.adaptive ? row_.size() : 0, 0.0),
+      row_middle_(row_between_.size(), 0.0),
+      row_aside_(row_between_.size(), 0.0),
       residual_(at(run.system.layout().nc())) {
   for (int j = 0; j < run.system.joints().count(); ++j) {
     const JointColumns& columns = run.channels.joints[at(j)];

@@ -30,7 +30,7 @@ void SingularPassage::add(double regularity, double t, RunExtremes& seen) {
   second_last_t_ = std::exchange(last_t_, t);
 }
 
-RunWatch::RunWatch(const System& system, const Channels& channels)
+RunWatch::RunWatch(const System& system, const Channels& channels, bool adaptive)
     : system_(system), channels_(channels), planar_(system.model().space == Space::planar) {
   const Model& model = system.model();
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
@@ -64,6 +64,7 @@ RunWatch::RunWatch(const System& system, const Channels& channels)
     movers_.push_back({b, first + (planar_ ? 3 : 7), planar_ ? 2 : 3, gyration_squared});
   }
   seen_.size = system.size();
+  if (!adaptive) return;
   seen_.noisy.resize(model.joints.size());
   values_aside_.resize(PeakValues(model, channels).size());
 }

@@ -120,7 +120,8 @@ class SingularPassage {
 
 class RunWatch {
  public:
-  [[gnu::cold]] RunWatch(const System& system, const Channels& channels);
+  /// `adaptive`: noise beside a singular position is looked for.
+  [[gnu::cold]] RunWatch(const System& system, const Channels& channels, bool adaptive);
 
   /// Whether the force of some joint with play has grown so much that its row should be looked at: one comparison a
   /// joint.
