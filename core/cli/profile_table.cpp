@@ -28,7 +28,8 @@ constexpr Row rows[] = {
 
 }  // namespace
 
-std::string profile_table(const Profile& profile, const Outcome& outcome, double text_seconds) {
+std::string profile_table(const Profile& profile, const Outcome& outcome, double first_step_seconds,
+                          double text_seconds) {
   const double total = profile.total();
   const auto share = [&](double part) { return fmt::format("{:.1f} %", total > 0.0 ? 100.0 * part / total : 0.0); };
   const auto seconds = [](double s) { return fmt::format("{:.6f}", s); };
@@ -50,7 +51,11 @@ std::string profile_table(const Profile& profile, const Outcome& outcome, double
                                                   {"events", outcome.events},
                                                   {"rows", outcome.rows}};
   for (const auto& [name, number] : numbers) counts.add_row({name, std::to_string(number)});
-  return times.text("  ") + counts.text("  ") +
+  const std::string first_step =
+      first_step_seconds > 0.0
+          ? fmt::format("  the first step ended after {:.6f} s of processor time of the program\n", first_step_seconds)
+          : "";
+  return times.text("  ") + counts.text("  ") + first_step +
          fmt::format("  rows became text beside the run in {:.6f} s of another thread\n", text_seconds);
 }
 

@@ -7,8 +7,10 @@
 
 namespace freeplay {
 
-/// Phases with their time, share and count, then the counts of the run. `text_seconds`: processor time that was spent
-/// beside the run on making rows into text.
-std::string profile_table(const Profile& profile, const Outcome& outcome, double text_seconds);
+/// Phases with their time, share and count, then the counts of the run. `first_step_seconds`: processor time of the
+/// program until its first step had ended, 0 where there was none; `text_seconds`: that was spent beside the run on
+/// making rows into text.
+std::string profile_table(const Profile& profile, const Outcome& outcome, double first_step_seconds,
+                          double text_seconds);
 
 }  // namespace freeplay

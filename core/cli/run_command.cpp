@@ -1,6 +1,7 @@
 #include "cli/run_command.h"
 
 #include <algorithm>
+#include <ctime>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -190,6 +191,7 @@ class RunJob {
     std::atomic<int> stop{0};
     hooks.interrupt = &stop;
     hooks.stepped = [&] {
+      if (first_step_seconds_ == 0.0) first_step_seconds_ = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
       if (repeats_ != nullptr) repeats_->look_after();
       if (interrupt != 0) stop = 1;
       if (interrupt != 0 || checkpoints_.due()) checkpoints_.add(simulation_->save());
@@ -265,7 +267,7 @@ class RunJob {
             (outcome.exit_code == 6 ? "" : glance(path_, options_.report)));
     }
     if (options_.profile) {
-      const std::string table = profile_table(profile_, outcome, recording_.text_seconds());
+      const std::string table = profile_table(profile_, outcome, first_step_seconds_, recording_.text_seconds());
       common_.json ? print_messages(table, common_.no_color) : print(table);
     }
     return exit_code;
@@ -329,6 +331,7 @@ class RunJob {
   std::optional<Simulation> simulation_;  // until it is over
   Checkpoints checkpoints_;
   Profile profile_;
+  double first_step_seconds_ = 0.0;  // of the processor, until the first step had ended
 };
 
 int dry_run(const LoadedModel& loaded, const AssembledModel& assembled, const CommonOptions& common) {

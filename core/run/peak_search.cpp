@@ -80,7 +80,6 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
     // The first step of a new course: as much as it changes it may bulge.
     return change > 1e-3 * higher ? Candidate{0.5, part_of(higher + 0.5 * change - largest, largest)} : Candidate{};
   }
-  if (higher + change + std::abs(start - before) <= largest) return {};
   const Parabola curve({(before_.x - start_.x) / (end_.x - start_.x), before}, {0.0, start}, {1.0, end});
   if (!(curve.bend < 0.0)) return {};
   const double top = curve.vertex();
@@ -88,6 +87,12 @@ PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) con
   const double s = std::clamp(top, nearest_end, 1.0 - nearest_end);
   const double height = top > 0.0 && top < 1.0 ? curve.at(top) : higher;
   return {s, part_of(height - 0.125 * curve.bend - largest, largest), part_of(height - largest, largest)};
+}
+
+// Whether the parabola could rise above the largest value: most values of most steps could not.
+bool PeakSearch::could_exceed(std::size_t value, double largest) const {
+  const double before = before_.values[value], start = start_.values[value], end = end_.values[value];
+  return ends_ < 3 || std::max(start, end) + std::abs(end - start) + std::abs(start - before) > largest;
 }
 
 // The parabola through the highest place that is known and those beside it.
@@ -113,8 +118,7 @@ PeakSearch::Candidate PeakSearch::by_looks(const Places& places, std::size_t val
 // A sharp peak rises so from far below that the ends do not show whether the step has gone over its top.
 PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest) const {
   const double start = start_.values[value], end = end_.values[value], rise = end - start;
-  if (ends_ < 3 || !(rise > steep * end && before_.values[value] < far_below * end)) return {};
-  if (!(end_.x - start_.x < start_.x - before_.x)) return {};  // steps shorten towards a sharp peak
+  if (!(rise > steep * end && before_.values[value] < far_below * end)) return {};
   const double gain = part_of(end + (1.0 - beside_end) * rise - largest, largest);
   return {beside_end, gain, gain};
 }
@@ -125,6 +129,7 @@ double PeakSearch::next(std::span<const double> largest) {
   const Places known = looked ? places() : Places{};
   Candidate best, likely;
   for (std::size_t i = 0; i < largest.size(); ++i) {
+    if (!looked && !could_exceed(i, largest[i])) continue;
     const Candidate one = looked ? by_looks(known, i, largest[i]) : by_ends(i, largest[i]);
     if (one.gain > best.gain && (one.likely > 0.0 || one.gain > fair_gain)) best = one;
     if (one.likely > likely.likely) likely = one;
@@ -140,7 +145,8 @@ double PeakSearch::next(std::span<const double> largest) {
 
 // What the usual looks leave is worth more of them where it is much.
 double PeakSearch::next_extra(Candidate best, std::span<const double> largest) {
-  for (std::size_t i = 0; i < largest.size() && extras_ == 0; ++i) {
+  const bool shortens = ends_ == 3 && end_.x - start_.x < start_.x - before_.x;  // towards a sharp peak
+  for (std::size_t i = 0; i < largest.size() && shortens && extras_ == 0; ++i) {
     const Candidate one = by_steepness(i, largest[i]);
     if (one.likely > best.likely) best = one;
   }

@@ -53,6 +53,7 @@ class PeakSearch {
     std::array<const double*, most_looks + most_extras + 2> values;
   };
   Places places() const;
+  bool could_exceed(std::size_t value, double largest) const;
   Candidate by_ends(std::size_t value, double largest) const;
   static Candidate by_looks(const Places& places, std::size_t value, double largest);
   Candidate by_steepness(std::size_t value, double largest) const;

@@ -72,12 +72,23 @@ class Program:
         """The run, and its seconds without those of the start: orders of unknowns and dependent rows are found there."""
         folder = os.path.join(self.results, name)
         words = [self.path, "run", model, *options, "--quiet", "--profile", "--force", "--out", folder]
-        with tempfile.TemporaryFile("w+") as told:
-            run = Run(folder, *measured(words, told))
-            told.seek(0)
-            seconds = {line.split()[0]: float(line.split()[1]) for line in told if line.split()[0] in ("start", "all")}
+        run, lines = self.printed(words, folder)
+        seconds = {line.split()[0]: float(line.split()[1]) for line in lines if line.split()[0] in ("start", "all")}
         return run, seconds["all"] - seconds["start"]
 
+    def started(self, model, options, name="run"):
+        """The run, and the processor seconds of the program until its first step had ended."""
+        folder = os.path.join(self.results, name)
+        words = [self.path, "run", model, *options, "--quiet", "--profile", "--force", "--out", folder]
+        run, lines = self.printed(words, folder)
+        return run, next(float(line.split()[5]) for line in lines if line.startswith("  the first step ended after "))
+
+    @staticmethod
+    def printed(words, folder):
+        with tempfile.TemporaryFile("w+") as output:
+            run = Run(folder, *measured(words, output))
+            output.seek(0)
+            return run, output.readlines()
 
 
 def fastest(call, times, seconds):

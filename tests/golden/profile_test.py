@@ -18,13 +18,15 @@ class Profile(ProgramTest):
         """Seconds and counts by phase, and the counts below."""
         lines = text[text.index("  profile "):].splitlines()[1:]
         seconds, counts, numbers = {}, {}, {}
-        for line in lines[:-1]:
+        for line in lines[:-2]:
             phase = re.fullmatch(r"  (\S.*?) {2,}([\d.]+) +([\d.]+) %(?: +(\d+)  \w+)?", line)
             if phase:
                 seconds[phase[1]], counts[phase[1]] = float(phase[2]), int(phase[4] or 0)
             else:
                 name, number = line.split()
                 numbers[name] = int(number)
+        first = re.fullmatch(r"  the first step ended after ([\d.]+) s of processor time of the program", lines[-2])
+        self.assertGreater(float(first[1]), 0.0)
         self.assertRegex(lines[-1], r"^  rows became text beside the run in [\d.]+ s of another thread$")
         return seconds, counts, numbers
 
