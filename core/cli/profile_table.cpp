@@ -1,5 +1,7 @@
 #include "cli/profile_table.h"
 
+#include <ctime>
+
 #include <fmt/format.h>
 
 #include "cli/text_table.h"
@@ -27,6 +29,8 @@ constexpr Row rows[] = {
 };
 
 }  // namespace
+
+double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 std::string profile_table(const Profile& profile, const Outcome& outcome, double first_step_seconds,
                           double text_seconds) {

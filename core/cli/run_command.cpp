@@ -1,7 +1,6 @@
 #include "cli/run_command.h"
 
 #include <algorithm>
-#include <ctime>
 #include <memory>
 #include <optional>
 #include <tuple>
@@ -76,11 +75,9 @@ class RunJob {
         sinks_(recording_.sinks()),
         checkpoints_(recording_, path_, made_from(options, common.command, *loaded.model),
                      checkpoint_period(options.checkpoint)) {
-    if (from == nullptr || !from->state) {
-      simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks());
-    } else {
-      simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks(), *from->state);
-    }
+    const bool begins = from == nullptr || !from->state;
+    begins ? simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks())
+           : simulation_.emplace(assembled.system, assembled.start, channels_, all_sinks(), *from->state);
     from == nullptr ? checkpoints_.begin() : checkpoints_.go_on(*from);
   }
 
@@ -191,7 +188,7 @@ class RunJob {
     std::atomic<int> stop{0};
     hooks.interrupt = &stop;
     hooks.stepped = [&] {
-      if (first_step_seconds_ == 0.0) first_step_seconds_ = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+      if (first_step_seconds_ == 0.0) first_step_seconds_ = processor_seconds();
       if (repeats_ != nullptr) repeats_->look_after();
       if (interrupt != 0) stop = 1;
       if (interrupt != 0 || checkpoints_.due()) checkpoints_.add(simulation_->save());
