@@ -92,10 +92,11 @@ void FormulaBounds::bound_in(const Span& span, Bounds& out, std::span<Bounds> sw
     } else if (instruction.operation == Operation::push_variable) {
       *x = span.ranges[static_cast<std::size_t>(instruction.constant)];
       *m = span.at_middle[static_cast<std::size_t>(instruction.constant)];
-    } else if (const int index = formula_.switch_of_[i]; index >= 0) {
+    } else if (const int index = formula_.switch_of_[i]; index >= 0 || has_forms(instruction.operation)) {
+      // What time alone decides is no switch: it has the form of its values.
       const Bounds decides = decides_by(instruction, span, x, m);
-      switches[static_cast<std::size_t>(index)] = decides;
-      take_form(instruction, span.sides == nullptr ? 0.0 : span.sides[index], decides, x, m);
+      if (index >= 0) switches[static_cast<std::size_t>(index)] = decides;
+      take_form(instruction, index < 0 || span.sides == nullptr ? 0.0 : span.sides[index], decides, x, m);
       tighten(*x, *m, span.half);
     } else {
       *x = range_of(instruction, x);
@@ -132,19 +133,15 @@ Interval FormulaBounds::values_in(std::span<const Interval> ranges, const Interv
   return operands[0];
 }
 
+bool FormulaBounds::has_forms(Operation operation) noexcept {
+  return operation == Operation::absolute || operation == Operation::sign || operation == Operation::minimum ||
+         operation == Operation::maximum || operation == Operation::choose;
+}
+
 Interval FormulaBounds::value_of(const Expression::Instruction& instruction, const Interval* x) noexcept {
   Interval out;
   if (FormulaSides::take_usual(instruction, x, out)) return out;
-  switch (instruction.operation) {
-    case Operation::absolute:
-    case Operation::sign:
-    case Operation::minimum:
-    case Operation::maximum:
-    case Operation::choose:
-      return chosen(instruction, x);
-    default:
-      break;
-  }
+  if (has_forms(instruction.operation)) return chosen(instruction, x);
   constexpr std::size_t most = 4;
   IntervalJet jets[most];
   const auto count = static_cast<std::size_t>(Expression::operand_count(instruction.operation));

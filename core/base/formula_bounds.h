@@ -55,6 +55,7 @@ class FormulaBounds {
   static void take_form(const Expression::Instruction& instruction, double side, const Bounds& decides, IntervalJet* x,
                         Jet* m) noexcept;
   static std::size_t form_above(Operation operation) noexcept;
+  static bool has_forms(Operation operation) noexcept;
   static double degree(const Expression::Instruction& instruction, const double* x, std::size_t count);
 
   const StateFormula& formula_;

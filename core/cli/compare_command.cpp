@@ -81,6 +81,7 @@ std::string table_text(const Comparison& comparison, bool all, const Words& word
   }
   text += fmt::format("# {} {} in {} {}: {} differ\n", channels.size(), words.columns, comparison.rows, words.rows,
                       differing(channels));
+  for (const std::string& missing : comparison.missing) text += "# " + missing + "\n";
   if (comparison.distances.empty() || comparison.rows == 0) return text;
   return text + fmt::format("# distance of bodies and frames, {} in all: {} m rms\n# farthest: {}, {} m at t = {} s\n",
                             comparison.distances.size(), number_text(comparison.distance.rms),

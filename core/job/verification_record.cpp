@@ -24,7 +24,9 @@ std::string agreement_text(const Verification& v) {
       peaks +=
           fmt::format("{}{}: {} and {}", peaks.empty() ? "" : ", ", peak.name, number(peak.run), number(peak.second));
   }
-  const std::string throughout = fmt::format("positions agree to {} throughout", limit);
+  const std::string throughout =
+      v.whole ? fmt::format("positions agree to {} throughout", limit)
+              : fmt::format("positions agree to {} until {:.6g} s, where the second run ended", limit, v.until);
   const std::string difference =
       v.largest > v.limit
           ? fmt::format("positions agree to {} until {:.6g} s and differ by up to {:.2g} m, at {:.6g} s", limit,

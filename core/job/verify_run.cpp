@@ -185,6 +185,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   Verification result = compare_runs(first, second.result(), rules);
   result.method = words(second.loaded.model->settings, second_explicit);
   result.steps = second.outcome.steps;
+  result.whole = second.outcome.exit_code == 0;
   if (second.outcome.exit_code != 0) {
     trouble =
         second.outcome.status == RunStatus::interrupted
@@ -210,6 +211,13 @@ void add_verification(const Verification& verification, RunRecord& record) {
     record.trust.add({.id = "verify",
                       .level = Trust::doubtful,
                       .message = fmt::format("a second run, by {}, has other peaks", verification.method)});
+  }
+  if (!verification.whole) {
+    record.trust.add(
+        {.id = "verify",
+         .level = Trust::doubtful,
+         .message = fmt::format("a second run, by {}, came to {:.6g} s alone: nothing after that is verified",
+                                verification.method, verification.until)});
   }
   if (verification.agreement == Agreement::disagree) {
     record.trust.add({.id = "verify",

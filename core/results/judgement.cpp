@@ -31,6 +31,7 @@ constexpr double of_strength = 0.1;               // mean pressure by that at wh
 constexpr double typical_density = 7800.0;        // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound
 constexpr double of_reach = 1.1;                  // distance by what the lengths allow
+constexpr double moves_nothing = 1e-9;            // of the model's size, in the whole run
 constexpr Limits of_drives{1e3, 1e6};             // force of a joint by those that drive and move the mechanism
 constexpr double most_play = 0.1;                 // clearance by the model's size
 constexpr double fewest_impacts = 10.0;           // in a window of statistics without a period
@@ -239,10 +240,13 @@ void judge_reach(const RunRecord& record, Verdict& verdict) {
 }
 
 /// The largest force of a constraint against everything that moves the mechanism: weights, applied forces and contacts,
-/// prescribed motions times the masses, and the kinetic energy of the other parts of the run over the model's size.
+/// prescribed motions times the masses, and the kinetic energy of the other parts of the run over the model's size. A
+/// force that moves nothing by a billionth of that size in the run is left alone.
 void judge_largest_force(const RunRecord& record, Verdict& verdict) {
   const RunExtremes& seen = record.extremes;
+  const double time = record.outcome.time - record.model.settings.start;
   if (seen.row_force_joint < 0) return;
+  if (!(seen.row_force * time * time > moves_nothing * mass(record.model) * seen.size)) return;
   const auto peak = std::ranges::max_element(seen.part_force);
   double kinetic = 0.0;
   for (std::size_t i = 0; i < RunExtremes::parts; ++i) {

@@ -69,6 +69,7 @@ struct Verification {
   std::string method;  ///< of the second run: its integrator, kind and steps
   long steps = 0;      ///< that it took
   double until = 0.0;  ///< the second run went as far [s]
+  bool whole = true;   ///< it came to its end: all of the run is verified
 
   bool throughout() const { return agreement == Agreement::agree; }
 };

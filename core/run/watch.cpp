@@ -141,17 +141,22 @@ void RunWatch::add_forces(std::span<const double> row, std::size_t part) {
     const double* f = &row[at(column)];
     return f[0] * f[0] + f[1] * f[1] + (planar_ ? 0.0 : f[2] * f[2]);
   };
+  const auto moment = [&](int column) {
+    return planar_ ? row[at(column + 2)] * row[at(column + 2)] : squared(column + 3);
+  };
+  const double per_arm = 1.0 / (seen_.size * seen_.size);
+  const auto load = [&](int column) { return std::max(squared(column), moment(column) * per_arm); };
   double of_rows = 0.0, others = 0.0;
   int joint = -1;
   for (std::size_t j = 0; j < has_rows_.size(); ++j) {
     const double force = squared(channels_.joints[j].force);
     if (has_rows_[j] == 0) {
-      others = std::max(others, force);
+      others = std::max(others, load(channels_.joints[j].force));
     } else if (force > of_rows) {
       of_rows = force, joint = static_cast<int>(j);
     }
   }
-  for (const ForceColumns& force : channels_.forces) others = std::max(others, squared(force.force));
+  for (const ForceColumns& force : channels_.forces) others = std::max(others, load(force.force));
   of_rows = std::sqrt(of_rows);
   seen_.applied_force = std::max(seen_.applied_force, std::sqrt(others));
   seen_.part_force[part] = std::max(seen_.part_force[part], of_rows);

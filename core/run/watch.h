@@ -73,7 +73,7 @@ struct RunExtremes {
   };
   std::vector<NoisyForce> noisy;
   double near_change = 0.0;    ///< largest change of it from step to step near or beside [N]
-  double applied_force = 0.0;  ///< largest force of contacts, springs and applied forces [N]
+  double applied_force = 0.0;  ///< largest force, or torque by L, of contacts, springs and loads [N]
   double drive_motion = 0.0;   ///< largest of |alpha| L + omega^2 L, or |a| + v^2/L, of a prescribing driver [m/s^2]
   double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
   double beyond_reach = 0.0;   ///< largest distance of a body from the origin by what the lengths allow

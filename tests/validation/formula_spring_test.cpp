@@ -69,6 +69,16 @@ TEST_P(FormulaSpringOrder, IsThatOfTheMethod) {
 INSTANTIATE_TEST_SUITE_P(Methods, FormulaSpringOrder,
                          ::testing::Values("bathe", "newmark", "hht", "generalized-alpha"));
 
+// 0.2 J within 8 mm of the way, of 1 J.
+TEST(FormulaSpring, StoresWhatActsInASmallPartOfItsWay) {
+  const ModelRun run(
+      sled("spring: {interpolation: linear, points: [[0, 0], [0.4237, 0], [0.4277, 50], [0.4317, 0], [2, 0]]}", 0.0,
+           1.0, "end: 1, step: 0.1 ms, output: {interval: 0.1}"));
+  EXPECT_NEAR(run.last("energy.potential"), 0.2, 1e-9);
+  EXPECT_NEAR(run.last("joint.rail.speed"), std::sqrt(0.8), 1e-4);
+  EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-4);
+}
+
 // 2 v' = -3 v |v| from 4 m/s: v = 4/(1 + 6 t).
 TEST(FormulaSpring, ADamperMayBeQuadratic) {
   const ModelRun run(

@@ -47,6 +47,9 @@ const Bump bumps[] = {{"exp(-({u})^2)", std::sqrt(M_PI)},
                       {"sqrt(max(0, 1 - ({u})^2))", M_PI / 2.0},
                       {"if(abs({u}) < 4, max(0, cos({u})), 0)", 2.0}};
 
+/// Of time alone, and 1 where bumps are met.
+const char* const factors[] = {"", "*if(t > 0.1, 1, 0)", "*min(1, abs(t)/0.1)", "*max(0, sign(t - 0.1))"};
+
 std::string written(const Bump& bump, double height, double centre, double width, bool turns) {
   const std::string u = turns ? fmt::format("(joint.guide.angle - {:.17g})/{:.17g}", centre, width)
                               : fmt::format("(body.m.x - {:.17g})/({:.17g} m)", centre, width);
@@ -66,7 +69,8 @@ TEST(MotionLoad, ABumpOfTheWayIsMetHoweverNarrowItIs) {
     const double width = std::pow(10.0, uniform(changes_often ? -3.0 : -5.0, -1.5)), centre = uniform(0.2, 0.8);
     const double accuracy = std::pow(10.0, uniform(-8.0, -4.0));
     const bool turns = i % 3 == 0;
-    const std::string load = written(bump, 0.5 / (bump.area * width), centre, width, turns);
+    const std::string load = written(bump, 0.5 / (bump.area * width), centre, width, turns) +
+                             factors[static_cast<std::size_t>(i) / 3 % std::size(factors)];
     const std::string simulation = fmt::format("accuracy: {:.17g}", accuracy);
     BuildOptions options;
     if (i % 4 == 3) options.integrator = "verner7";

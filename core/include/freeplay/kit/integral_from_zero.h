@@ -14,7 +14,7 @@ namespace freeplay {
 
 /// F(x) = integral of f from 0 to x, to 1e-10 of the area below |f|. Made once, as polynomials on cells of which each
 /// ends twice as far from 0 as the one before and is cut where f is not smooth, so that a small x keeps its digits; a
-/// value costs no call of f. Immutable once it is made.
+/// value costs no call of f. What lasts less than a 256th of such a cell may be missed. Immutable once it is made.
 class IntegralFromZero {
  public:
   IntegralFromZero() = default;
@@ -45,6 +45,8 @@ class IntegralFromZero {
   static constexpr std::size_t nodes = 14;
   static constexpr std::size_t most_cells = 128;  // of one doubling: where f is mere rounding none is smooth
   static constexpr int most_cuts = 40, most_cuts_at_end = 10;
+  static constexpr int checks = 256;  // of an uncut cell, for what its nodes may have missed
+  static constexpr double seen = 1e-6;
 
   /// F over a cell, by powers of t from -1 to 1.
   struct Cell {
@@ -52,6 +54,11 @@ class IntegralFromZero {
     double value(double t) const {
       double sum = c[nodes];
       for (std::size_t k = nodes; k > 0; --k) sum = c[k - 1] + t * sum;
+      return sum;
+    }
+    double slope(double t) const {
+      double sum = static_cast<double>(nodes) * c[nodes];
+      for (std::size_t k = nodes - 1; k > 0; --k) sum = static_cast<double>(k) * c[k] + t * sum;
       return sum;
     }
   };
@@ -85,7 +92,8 @@ class IntegralFromZero {
       good = false;
     }
     Cell cell;
-    const bool smooth = good && expand(f, 0.5 * (to - from), cell);
+    const bool smooth =
+        good && expand(f, 0.5 * (to - from), cell) && shows(cell, from, to, cuts < 8 ? checks >> cuts : 0);
     const bool last = cuts >= (good ? most_cuts : most_cuts_at_end) || starts_.size() >= most_cells_;
     if (!smooth && !last) {
       const double middle = 0.5 * (from + to);
@@ -128,6 +136,22 @@ class IntegralFromZero {
       now = next;
     }
     return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest;
+  }
+
+  /// Whether f is between the nodes what the cell says. Where it has no value the cell has to do.
+  bool shows(const Cell& cell, double from, double to, int count) const {
+    const double half = 0.5 * (to - from);
+    double largest = 0.0, off = 0.0;
+    try {
+      for (int i = 0; i < count; ++i) {
+        const double t = (2.0 * i + 1.0) / count - 1.0, f = force(from + half * (1.0 + t));
+        largest = std::max(largest, std::abs(f));
+        off = std::max(off, std::abs(f - cell.slope(t) / half));
+      }
+    } catch (const std::exception&) {
+      return true;
+    }
+    return off <= seen * largest;
   }
 
   double beyond(double from, double to) const {
