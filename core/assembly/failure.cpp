@@ -16,19 +16,6 @@
 namespace freeplay {
 namespace {
 
-void refuse_open_path(const ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
-  for (std::size_t i = 0; i < rows.row.size(); ++i) {
-    if (rows.path[i] < 0 ||
-        std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= mechanism.model().settings.assembly_tolerance)
-      continue;
-    const InverseKinematics& entry = mechanism.model().kinematics[at(mechanism.paths[at(rows.path[i])].kinematics)];
-    throw Error(Error::Category::input, "ik-unreachable",
-                fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s",
-                            entry.name, mechanism.state.t()),
-                entry.path_location, "if it can, give the bodies a `pose` closer to the wanted one");
-  }
-}
-
 /// "; the path of 'tool' begins at x = 1 m, y = 0 m", of every path.
 std::string begin_of_paths(const ClosedMechanism& mechanism) {
   const Model& model = mechanism.model();
@@ -47,6 +34,20 @@ std::string begin_of_paths(const ClosedMechanism& mechanism) {
     if (!place.empty()) text += fmt::format("; the path of '{}' begins at{}: is that within reach?", entry.name, place);
   }
   return text;
+}
+
+void refuse_open_path(const ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
+  for (std::size_t i = 0; i < rows.row.size(); ++i) {
+    if (rows.path[i] < 0 ||
+        std::abs(rows.residual[static_cast<Eigen::Index>(i)]) <= mechanism.model().settings.assembly_tolerance)
+      continue;
+    const InverseKinematics& entry = mechanism.model().kinematics[at(mechanism.paths[at(rows.path[i])].kinematics)];
+    throw Error(Error::Category::input, "ik-unreachable",
+                fmt::format("the mechanism cannot bring the frame of '{}' to its path at the start time {} s{}",
+                            entry.name, mechanism.state.t(), begin_of_paths(mechanism)),
+                entry.path_location,
+                "if it is, give the bodies a `pose` closer to the wanted one; lengths without a unit are metres");
+  }
 }
 
 }  // namespace

@@ -256,7 +256,7 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
 
     def test_what_a_second_run_did_not_come_to_is_not_verified(self):
         out, _ = self.run_model(STIFF, "--verify")
-        verified = self.summary["verify"]
+        verified = self.summary["verification"]
         self.assertEqual("agree", verified["agreement"])
         self.assertLess(verified["until"], 2.0)
         self.assertIn("until %.6g s, where the second run ended" % verified["until"], out)

@@ -79,6 +79,16 @@ TEST(AssemblyFailure, APathOutOfReachNamesTheLegAndTheTime) {
   EXPECT_THAT(error->message(), HasSubstr("t = 0"));
 }
 
+// Without millimetres.
+TEST(AssemblyFailure, APathOfLoopsOutOfReachNamesItsPlace) {
+  const auto error =
+      failure(replaced(mechanism("five-bar"), "{x: 40 mm*cos(4*pi*t/1 s), y: 250 mm + 40 mm*sin(4*pi*t/1 s)}",
+                       "{x: 40*cos(4*pi*t), y: 250 + 40*sin(4*pi*t)}"));
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->id(), "ik-unreachable");
+  EXPECT_THAT(error->message(), HasSubstr("begins at x = 40 m, y = 250 m: is that within reach?"));
+}
+
 // The path leaves the reach of a leg on the way: rows before stay, and the reason names leg and time.
 TEST(AssemblyFailure, APathThatLeavesTheReachLaterEndsTheRun) {
   std::string text = replaced(mechanism("3-rrr"), "x: $R*cos(2*pi*t/$T), y: $R*sin(2*pi*t/$T)", "x: 0, y: 10*t");
