@@ -67,6 +67,12 @@ struct Spring {
     if (!spring) return linear;
     return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
   }
+  /// A sentence where a function makes a stiffness or a damping negative, else null.
+  static const char* doubt(const JointInput& in) {
+    if (in.functions.empty()) return nullptr;
+    if (in.functions[0] < 0.0) return "The stiffness is negative here: the spring drives away from where it is slack.";
+    return in.functions[1] < 0.0 ? "The damping is negative here: it drives the motion." : nullptr;
+  }
   /// A sentence where the ends of a linear spring are as good as at one place, else null.
   const char* doubt(double length) const {
     if (!(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
@@ -145,7 +151,9 @@ class SpringDamper final : public Joint {
     if (d.norm() >= smallest_length) spring_.write_kinks(d.norm() - spring_.free, d.dot(rate) / d.norm(), g);
   }
   const char* warning(const JointInput& in) const override {
-    return spring_.kind == linear ? spring_.doubt((position(*in.b) - position(*in.a)).norm()) : nullptr;
+    const char* const driving = Spring::doubt(in);
+    if (driving != nullptr || spring_.kind != linear) return driving;
+    return spring_.doubt((position(*in.b) - position(*in.a)).norm());
   }
   void apply(const JointInput& in, JointForces& out) const override {
     if (spring_.kind == linear) {
@@ -225,7 +233,9 @@ class SpatialSpringDamper final : public Joint {
     if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
   }
   const char* warning(const JointInput& in) const override {
-    return spring_.kind == linear ? spring_.doubt((space::position(*in.b) - space::position(*in.a)).norm()) : nullptr;
+    const char* const driving = Spring::doubt(in);
+    if (driving != nullptr || spring_.kind != linear) return driving;
+    return spring_.doubt((space::position(*in.b) - space::position(*in.a)).norm());
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const Pair pair = pair_of(in);

@@ -21,6 +21,14 @@ forces: {hold: {type: spring-damper, between: [ground, m], stiffness: 1e6, dampi
 initial: {joints: {slide: 1.1 m}}
 simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
 """
+# A spring or damper that a function of time changes.
+CHANGING = """freeplay: 1
+bodies: {m: {mass: 1, inertia: 0.1}}
+joints: {p: {type: %s, between: [ground, m]}}
+forces: {f: {type: spring-damper, kind: %s, between: [ground, m], %s}}
+initial: {joints: {p: 1}}
+simulation: {end: 2 s, accuracy: 1 um}
+"""
 
 
 class Verdict(ProgramTest):
@@ -48,6 +56,19 @@ forces: {d: {type: torque, on: a, value: "-0.2 N*m*s/rad*joint.A.speed"}}
 simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
 """)
         self.assertNotIn("largest-force", self.ids(), self.trust)
+
+    def test_a_stiffness_or_a_damping_that_becomes_negative_is_doubtful(self):
+        for kind, joint in (("linear", "prismatic"), ("rotational", "revolute")):
+            for keys, found in (("stiffness: 10, damping: '2*cos(3*t)'", "The damping is negative"),
+                                ("stiffness: '10*cos(3*t)'", "The stiffness is negative"),
+                                ("stiffness: '10*(2 + cos(3*t))', damping: '2*cos(t)^2'", None)):
+                with self.subTest(kind=kind, keys=keys):
+                    self.run_model(CHANGING % (joint, kind, keys))
+                    if found is None:
+                        self.assertEqual("good", self.trust["verdict"], self.trust)
+                    else:
+                        self.assertEqual(["law-range"], self.ids(), self.trust)
+                        self.assertIn(found, self.trust["reasons"][0]["message"])
 
     def test_what_a_second_run_did_not_come_to_is_not_verified(self):
         out = self.run_model(STIFF, "--verify")

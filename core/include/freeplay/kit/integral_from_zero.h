@@ -82,7 +82,7 @@ class IntegralFromZero {
   }
 
   /// Cuts [from, to] until f is a polynomial in each part, or has no value in what is left.
-  void add(double from, double to, int cuts) {
+  [[gnu::cold]] void add(double from, double to, int cuts) {
     if (!whole_) return;
     std::array<double, nodes> f;
     bool good = true;
@@ -113,7 +113,7 @@ class IntegralFromZero {
 
   /// The integral's series, but for its constant, from values of f at the zeros of the Chebyshev polynomial. Whether f
   /// has as many digits as it should.
-  static bool expand(const std::array<double, nodes>& f, double half, Cell& cell) {
+  [[gnu::cold]] static bool expand(const std::array<double, nodes>& f, double half, Cell& cell) {
     std::array<double, nodes + 2> a{};
     double largest = 0.0;
     for (const double value : f) largest = std::max(largest, std::abs(value));
@@ -139,7 +139,7 @@ class IntegralFromZero {
   }
 
   /// Whether f is between the nodes what the cell says. Where it has no value the cell has to do.
-  bool shows(const Cell& cell, double from, double to, int count) const {
+  [[gnu::cold]] bool shows(const Cell& cell, double from, double to, int count) const {
     const double half = 0.5 * (to - from);
     double largest = 0.0, off = 0.0;
     try {
