@@ -23,7 +23,7 @@ simulation: {end: 2 s, integrator: bathe, accuracy: 1 um}
 """
 # A spring or damper that a function of time changes.
 CHANGING = """freeplay: 1
-bodies: {m: {mass: 1, inertia: 0.1}}
+bodies: {m: {mass: 1, inertia: 1}}
 joints: {p: {type: %s, between: [ground, m]}}
 forces: {f: {type: spring-damper, kind: %s, between: [ground, m], %s}}
 initial: {joints: {p: 1}}
