@@ -31,6 +31,7 @@ constexpr double of_strength = 0.1;               // mean pressure by that at wh
 constexpr double typical_density = 7800.0;        // steel [kg/m^3]
 constexpr Limits of_sound{2e-3, 1e-1};            // approach speed by that of sound
 constexpr double of_reach = 1.1;                  // distance by what the lengths allow
+constexpr double of_energy_inside = 0.2;          // of a row inside of a step
 constexpr double moves_nothing = 1e-9;            // of the model's size, in the whole run
 constexpr Limits of_drives{1e3, 1e6};             // force of a joint by those that drive and move the mechanism
 constexpr double most_play = 0.1;                 // clearance by the model's size
@@ -103,6 +104,16 @@ void judge_energy(const RunRecord& record, Verdict& verdict) {
     text += fmt::format("; most of it came from t = {:.4g} s on", seen.residual_time);
   }
   judge(part, of_energy, {.id = "energy-residual", .level = {}, .message = text}, verdict);
+  const double inside = seen.residual_inside / std::max(moved, least);
+  if (part >= of_energy.doubtful || !(inside > of_energy_inside)) return;
+  verdict.add(
+      {.id = "energy-residual",
+       .level = Trust::doubtful,
+       .message = fmt::format("at t = {:.4g} s, inside of a step, the energy is off by {:.2g} J, {:.3g} % of what "
+                              "was moved: the step went over something that acts there; ask for shorter steps",
+                              seen.residual_inside_time, seen.residual_inside, 100.0 * inside),
+       .value = inside,
+       .limit = of_energy_inside});
 }
 
 void judge_constraints(const RunRecord& record, Verdict& verdict) {

@@ -323,6 +323,7 @@ bool Recorder::see_at(double t, std::span<double> row) {
 bool Recorder::write_row_at(double t) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::output);
   if (!see_at(t, row_between_)) return false;
+  run_.watch.add_inside(row_between_);
   maxima_.see(row_between_);
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) {

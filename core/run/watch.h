@@ -55,6 +55,8 @@ struct RunExtremes {
   double exchanged = 0.0;                      ///< work put in and taken out, both positive, by element and step [J]
   double residual = 0.0;                       ///< largest |energy residual| [J]
   double residual_time = 0.0;                  ///< when it had reached half of that [s]
+  double residual_inside = 0.0;                ///< the same of rows inside of steps, whose ends may say nothing of it
+  double residual_inside_time = 0.0;           ///< [s]
   /// Of each of sixteen parts of the run: largest kinetic energy [J] and largest force of a joint's rows [N].
   static constexpr std::size_t parts = 16;
   std::array<double, parts> part_kinetic{}, part_force{};
@@ -86,6 +88,7 @@ struct RunExtremes {
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
     archive(self.kinetic, self.potential, self.work, self.dissipated, self.residual, self.residual_time);
+    archive(self.residual_inside, self.residual_inside_time);
     archive(self.part_kinetic, self.part_force, self.row_force, self.row_force_time, self.row_force_joint);
     archive(self.near, self.beside, self.away, self.noisy, self.near_change);
     archive(self.applied_force);
@@ -140,6 +143,12 @@ class RunWatch {
   void add_regularity(double regularity, double t) { passage_.add(regularity, t, seen_); }
   /// EnergyAccount::exchanged() by now.
   void note_exchanged(double work) { seen_.exchanged = work; }
+  /// A row inside of a step that an accuracy chose.
+  void add_inside(std::span<const double> row) {
+    const double residual = std::abs(row[at(channels_.energy.residual)]);
+    if (!(residual > seen_.residual_inside)) return;
+    seen_.residual_inside = residual, seen_.residual_inside_time = row[at(channels_.time)];
+  }
   /// Largest residual of positions after a step [m or rad].
   void add_open(double residual) { seen_.open = std::max(seen_.open, residual); }
   /// Why add() returned this joint: the row is the same. Allocates.

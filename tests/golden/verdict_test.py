@@ -29,6 +29,13 @@ forces: {f: {type: spring-damper, kind: %s, between: [ground, m], %s}}
 initial: {joints: {p: 1}}
 simulation: {end: 2 s, accuracy: 1 um}
 """
+# A bead on a wire with a hill.
+HILL = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {b: {mass: 0.5, inertia: 1e-5, pose: {position: [-0.5, 0]}, velocity: {linear: [0.1, 0], angular: 0}}}
+joints: {T: {type: point-on-curve, between: [ground, b], curve: "%s*smooth(x, %d mm, %d mm)*(1 - smooth(x, %d mm, %d mm))"}}
+simulation: {end: 10 s, accuracy: 1 um}
+"""
 
 
 class Verdict(ProgramTest):
@@ -69,6 +76,15 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
                     else:
                         self.assertEqual(["law-range"], self.ids(), self.trust)
                         self.assertIn(found, self.trust["reasons"][0]["message"])
+
+    def test_a_hill_that_a_step_goes_over_is_shown_by_rows(self):
+        # A bead with 0.1 m/s rises by 0.51 mm.
+        for height, width, found in (("1 mm", 3, True), ("0.4 mm", 3, True), ("0.4 mm", 200, False), ("1 mm", 200, False)):
+            with self.subTest(height=height, width=width):
+                self.run_model(HILL % (height, width, 2 * width, 2 * width, 3 * width))
+                self.assertEqual(["energy-residual"] if found else [], self.ids(), self.trust)
+        self.run_model(HILL % ("1 mm", 3, 6, 6, 9), "--step", "1 ms")
+        self.assertEqual("good", self.trust["verdict"])
 
     def test_what_a_second_run_did_not_come_to_is_not_verified(self):
         out = self.run_model(STIFF, "--verify")
