@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -46,7 +47,7 @@ class IntegralFromZero {
   static constexpr std::size_t most_cells = 128;  // of one doubling: where f is mere rounding none is smooth
   static constexpr int most_cuts = 40, most_cuts_at_end = 10;
   static constexpr int checks = 256;  // of an uncut cell, for what its nodes may have missed
-  static constexpr double seen = 1e-6;
+  static constexpr double seen = 1e-6, end_of_cell = 1.0 - 1e-9;
 
   /// F over a cell, by powers of t from -1 to 1.
   struct Cell {
@@ -92,8 +93,7 @@ class IntegralFromZero {
       good = false;
     }
     Cell cell;
-    const bool smooth =
-        good && expand(f, 0.5 * (to - from), cell) && shows(cell, from, to, cuts < 8 ? checks >> cuts : 0);
+    const bool smooth = good && expand(f, from, to, cell) && shows(cell, from, to, cuts < 8 ? checks >> cuts : 0);
     const bool last = cuts >= (good ? most_cuts : most_cuts_at_end) || starts_.size() >= most_cells_;
     if (!smooth && !last) {
       const double middle = 0.5 * (from + to);
@@ -113,10 +113,13 @@ class IntegralFromZero {
 
   /// The integral's series, but for its constant, from values of f at the zeros of the Chebyshev polynomial. Whether f
   /// has as many digits as it should.
-  [[gnu::cold]] static bool expand(const std::array<double, nodes>& f, double half, Cell& cell) {
+  [[gnu::cold]] static bool expand(const std::array<double, nodes>& f, double from, double to, Cell& cell) {
     std::array<double, nodes + 2> a{};
-    double largest = 0.0;
-    for (const double value : f) largest = std::max(largest, std::abs(value));
+    const double half = 0.5 * (to - from);
+    const auto [low, high] = std::minmax_element(f.begin(), f.end());
+    const double largest = std::max(std::abs(*low), std::abs(*high));
+    // What f is off by where its argument is rounded.
+    const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * to * (*high - *low) / half;
     for (std::size_t k = 0; k < nodes; ++k) {
       for (std::size_t j = 0; j < nodes; ++j) a[k] += f[j] * polynomials()[k][j];
       a[k] *= 2.0 / static_cast<double>(nodes);
@@ -135,16 +138,18 @@ class IntegralFromZero {
       before = now;
       now = next;
     }
-    return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest;
+    return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest + rounding;
   }
 
-  /// Whether f is between the nodes what the cell says. Where it has no value the cell has to do.
+  /// Whether f is between the nodes and beyond the last ones what the cell says. Where it has no value the cell has to
+  /// do.
   [[gnu::cold]] bool shows(const Cell& cell, double from, double to, int count) const {
     const double half = 0.5 * (to - from);
     double largest = 0.0, off = 0.0;
     try {
-      for (int i = 0; i < count; ++i) {
-        const double t = (2.0 * i + 1.0) / count - 1.0, f = force(from + half * (1.0 + t));
+      for (int i = -2; i < count; ++i) {
+        const double t = i < 0 ? (2.0 * i + 3.0) * end_of_cell : (2.0 * i + 1.0) / count - 1.0;
+        const double f = force(from + half * (1.0 + t));
         largest = std::max(largest, std::abs(f));
         off = std::max(off, std::abs(f - cell.slope(t) / half));
       }
