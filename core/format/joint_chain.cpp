@@ -105,7 +105,7 @@ class Chain {
     element.joint = element.has_play ? joint : twin.joint;
     element.layout = element.has_play ? layout : twin.layout;
     if (element.has_play) {
-      element.twin = std::make_shared<const IdealTwin>(std::move(twin));
+      element.twin = std::make_shared<const IdealTwin>(twin);
     } else {
       draft_.model.ideal.push_back(element.name);
     }

@@ -218,7 +218,7 @@ class JointEntry {
     element().joint = play ? joint : ideal.joint;
     element().layout = play ? layout : ideal.layout;
     element().has_play = play;
-    if (play) element().twin = std::make_shared<const IdealTwin>(std::move(ideal));
+    if (play) element().twin = std::make_shared<const IdealTwin>(ideal);
     if (twins) doubt_play(layout);
     if (twins && parameters.block) doubt_inside(parameters, layout);
     if (parameters.block) doubt_contact_stiffness(entry_, *parameters.block, layout, draft_.length_scale);
