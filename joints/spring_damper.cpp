@@ -67,15 +67,15 @@ struct Spring {
     if (!spring) return linear;
     return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
   }
-  /// A sentence where a function makes a stiffness or a damping negative, else null.
-  static const char* doubt(const JointInput& in) {
-    if (in.functions.empty()) return nullptr;
-    if (in.functions[0] < 0.0) return "The stiffness is negative here: the spring drives away from where it is slack.";
-    return in.functions[1] < 0.0 ? "The damping is negative here: it drives the motion." : nullptr;
-  }
-  /// A sentence where the ends of a linear spring are as good as at one place, else null.
-  const char* doubt(double length) const {
-    if (!(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
+  /// A sentence where a function makes a stiffness or a damping negative, or the ends of a linear spring are as good as
+  /// at one place; else null.
+  const char* doubt(const JointInput& in, double length) const {
+    if (!in.functions.empty()) {
+      if (in.functions[0] < 0.0)
+        return "The stiffness is negative here: the spring drives away from where it is slack.";
+      if (in.functions[1] < 0.0) return "The damping is negative here: it drives the motion.";
+    }
+    if (kind != linear || !(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
     return "The spring is pressed together to less than a twentieth of its free length, as none can be; beyond that it "
            "changes sides.";
   }
@@ -151,9 +151,7 @@ class SpringDamper final : public Joint {
     if (d.norm() >= smallest_length) spring_.write_kinks(d.norm() - spring_.free, d.dot(rate) / d.norm(), g);
   }
   const char* warning(const JointInput& in) const override {
-    const char* const driving = Spring::doubt(in);
-    if (driving != nullptr || spring_.kind != linear) return driving;
-    return spring_.doubt((position(*in.b) - position(*in.a)).norm());
+    return spring_.doubt(in, (position(*in.b) - position(*in.a)).norm());
   }
   void apply(const JointInput& in, JointForces& out) const override {
     if (spring_.kind == linear) {
@@ -233,9 +231,7 @@ class SpatialSpringDamper final : public Joint {
     if (spring_.kind == linear) channels[0] = (space::position(*in.b) - space::position(*in.a)).norm();
   }
   const char* warning(const JointInput& in) const override {
-    const char* const driving = Spring::doubt(in);
-    if (driving != nullptr || spring_.kind != linear) return driving;
-    return spring_.doubt((space::position(*in.b) - space::position(*in.a)).norm());
+    return spring_.doubt(in, (space::position(*in.b) - space::position(*in.a)).norm());
   }
   void apply(const JointInput& in, JointForces& out) const override {
     const Pair pair = pair_of(in);

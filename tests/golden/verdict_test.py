@@ -1,4 +1,4 @@
-"""Verdicts on forces that torques make, and on what a second run did not come to."""
+"""Verdicts on forces that torques make, springs that drive, hills inside of steps, and second runs that end early."""
 import json
 import math
 import unittest
