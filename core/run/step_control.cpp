@@ -7,7 +7,8 @@ namespace freeplay {
 namespace {
 constexpr double smallest_error = 1e-8;  // below, the largest growth is reached anyway, and little is learned
 constexpr double largest_growth = 5.0;
-constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first step, whose length is arbitrary
+constexpr double first_growth = 1e4, first_error = 1e-16;  // of the first steps, whose length is arbitrary
+constexpr double motionless = 1e-12;                       // an error that is one of rounding
 constexpr double broken_power = 3.0;  // after an event forces grow as broken powers: errors fall no faster
 }  // namespace
 
@@ -29,10 +30,11 @@ void StepControl::accept(double dt, double error) {
   const double growth = first_ ? first_growth : std::max(largest_growth, next_ / dt);
   double factor = std::clamp(0.9 * std::pow(judged, -proportional_ / power_) * std::pow(last_error_, damping_ / power_),
                              0.2, growth);
-  first_ = broken_ = false;
+  first_ = first_ && error < smallest_error;
+  broken_ = false;
   if (rejected_) factor = std::min(factor, 1.0);
   const double proposed = next_;
-  next_ = std::min({dt * factor, limits_.largest, error > smallest_error ? limits_.largest : limits_.uninformed});
+  next_ = std::min({dt * factor, limits_.largest, error > motionless ? limits_.largest : limits_.uninformed});
   // Between two corners that rounding alone keeps apart no step is too short.
   if (dt < limits_.smallest) next_ = std::max(next_, std::min(proposed, limits_.largest));
   last_error_ = e;

@@ -11,14 +11,15 @@ namespace freeplay {
 
 struct StepLimits {
   double first, smallest, largest;  ///< [s]
-  /// Largest after a step that hardly erred, as of a body at rest: it says nothing of forces to come [s].
+  /// Largest after a step that erred by rounding alone, as of a body at rest: it says nothing of forces to come [s].
   double uninformed = std::numeric_limits<double>::infinity();
 };
 
 /// Proportional-integral control: after an accepted step with the error E (1 is allowed) the next is
-///   h 0.9 E^(-a/p) E_old^(b/p), within [0.2, 5] h, p the power of h with which the error falls (after the first step
-///   up to 10^4 h); a = 0.7, b = 0.4 (Gustafsson 1991), and from p = 5 on, where errors of neighbouring steps are more
-///   alike, a = 0.85, b = 0.2 (Hairer and Wanner 1996, Solving Ordinary Differential Equations II, IV.2);
+///   h 0.9 E^(-a/p) E_old^(b/p), within [0.2, 5] h, p the power of h with which the error falls (after the first step,
+///   and while E stays below 1e-8, up to 10^4 h); a = 0.7, b = 0.4 (Gustafsson 1991), and from p = 5 on, where errors
+///   of neighbouring steps are more alike, a = 0.85, b = 0.2 (Hairer and Wanner 1996, Solving Ordinary Differential
+///   Equations II, IV.2);
 /// after a rejected one h 0.9 E^(-1/p), within [0.1, 0.9] h, and the next does not grow.
 class StepControl {
  public:
