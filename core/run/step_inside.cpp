@@ -15,7 +15,7 @@ constexpr double astray_inside = 1.0;      // and by which its ends may mislead:
 constexpr double nearest_aside = 1e-8;     // regularity of a step that is looked into, but for the output
 constexpr double as_far = 0.5;             // part of the regularity at its end: 0.7 of the distance
 constexpr int most_sweeps = 3;
-constexpr double most_growth = 2.0;  // of changes from sweep to sweep: more is a stiff force, less may be rounding
+constexpr double most_growth = 2.0;  // of changes from sweep to sweep that matter: more is a stiff force
 }  // namespace
 
 StepInside::StepInside(RunContext& run, RunFailure& failure, StepAttempt& attempt)
@@ -89,7 +89,7 @@ void StepInside::know_inside() {
     run_.inner.fit();
     const double now = change(0);
     if (now <= unnoticed_inside) return;
-    if (!(now < most_growth * last_change)) return run_.inner.forget();
+    if (now > astray_inside && !(now < most_growth * last_change)) return run_.inner.forget();
     last_change = now;
   }
 }
