@@ -33,6 +33,15 @@ struct FrameOutline {
     for (std::size_t i = 0; i < 3; ++i) gap[i] = std::max({low[i] - point[i], point[i] - high[i], 0.0});
     return std::hypot(gap[0], gap[1], gap[2]);
   }
+  /// From the origin outwards, the longest way from one place to the next.
+  double longest_gap() const {
+    std::vector<double> away{0.0};
+    for (const Vector3& place : places) away.push_back(distance(place, {}));
+    std::ranges::sort(away);
+    double gap = 0.0;
+    for (std::size_t i = 1; i < away.size(); ++i) gap = std::max(gap, away[i] - away[i - 1]);
+    return gap;
+  }
   void add(const std::string& name, const Vector3& place, double from_com) {
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = places.empty() ? place[i] : std::min(low[i], place[i]);
@@ -138,8 +147,10 @@ class BodyDoubts {
   /// Middle one of the others, for one that is among the longest.
   double scale_of_others() const { return reaches_.size() < 2 ? 0.0 : reaches_[(reaches_.size() - 2) / 2]; }
 
+  /// Frames in a row that goes far, as those of a chain of many links on the ground, are no mistake.
   bool is_far(const FrameOutline& outline) const {
-    return scale_of_others() > 0.0 && outline.reach > bare_limit::length * scale_of_others();
+    const double far = bare_limit::length * scale_of_others();
+    return far > 0.0 && outline.reach > far && outline.longest_gap() > far;
   }
 
   void judge(std::size_t i) const {

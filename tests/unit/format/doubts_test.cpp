@@ -264,5 +264,26 @@ TEST(Doubts, OfBodies) {
       of_cranks);
 }
 
+constexpr Answer of_places_in_a_row[] = {
+    {"0.2*$i", ""},
+    {"0.2*$i + 0.01*$i^4",
+     "6:24 doubtful-length: 'ground/swing40.A' is 2.561e+04 m from the origin of its body, but the lengths around it "
+     "are about 0.05 m: write the unit after the numbers, as in '2.561e+04 mm'"},
+};
+
+TEST(Doubts, NotOfRowsOfFramesThatGoFar) {
+  expect_answers(
+      "freeplay: 1\n"
+      "gravity: [0, -9.81]\n"
+      "templates:\n"
+      "  swing:\n"
+      "    bodies: {rod: {mass: 1, inertia: 0.01, com: [0.05, 0]}}\n"
+      "    frames: {ground/A: [@, 0]}\n"
+      "    joints: {A: {type: revolute, between: [ground/A, rod]}}\n"
+      "instances: {swing: {template: swing, count: 40}}\n" +
+          short_run,
+      of_places_in_a_row);
+}
+
 }  // namespace
 }  // namespace freeplay
