@@ -31,6 +31,7 @@ std::pair<Point, Point> ends_of(const std::vector<Point>& points) {
 }
 
 std::vector<Point> hull(std::vector<Point> points) {
+  constexpr double flat = 1e-6;  // twice the area of a corner that rounding alone makes
   const auto before = [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); };
   std::ranges::sort(points, before);
   points.erase(std::unique(points.begin(), points.end(), [](auto& a, auto& b) { return a.x == b.x && a.y == b.y; }),
@@ -40,7 +41,7 @@ std::vector<Point> hull(std::vector<Point> points) {
   for (const bool upper : {false, true}) {
     const std::size_t base = out.size();
     for (const Point& p : points) {
-      while (out.size() >= base + 2 && cross(out.back() - out[out.size() - 2], p - out.back()) <= 0.0) out.pop_back();
+      while (out.size() >= base + 2 && cross(out.back() - out[out.size() - 2], p - out.back()) <= flat) out.pop_back();
       out.push_back(p);
     }
     out.pop_back();
