@@ -26,6 +26,7 @@ class IntegralFromZero {
     double from = 0.0;
     for (double to = first; from < sign_ * end && whole_; from = to, to *= 2.0) {
       most_cells_ = starts_.size() + most_cells;
+      nothing_ = rounded * largest(from, to);
       add(from, to, from > 0.0 ? 0 : most_cuts);
     }
   }
@@ -48,6 +49,7 @@ class IntegralFromZero {
   static constexpr int most_cuts = 40, most_cuts_at_end = 10;
   static constexpr int checks = 256;  // of an uncut cell, for what its nodes may have missed
   static constexpr double seen = 1e-6, end_of_cell = 1.0 - 1e-9;
+  static constexpr double rounded = 1e-15;  // of the largest f in a doubling: less is nothing, as where exp underflows
 
   /// F over a cell, by powers of t from -1 to 1.
   struct Cell {
@@ -65,6 +67,17 @@ class IntegralFromZero {
   };
 
   double force(double u) const { return sign_ * f_(sign_ * u); }
+
+  /// The largest |f| that is seen.
+  [[gnu::cold]] double largest(double from, double to) const {
+    double out = 0.0;
+    try {
+      for (int i = 0; i < checks; ++i) out = std::max(out, std::abs(force(from + (i + 0.5) / checks * (to - from))));
+    } catch (const std::exception&) {
+      // what is seen before it has no value has to do
+    }
+    return out;
+  }
 
   /// T_k at the zeros of T_nodes.
   using Polynomials = std::array<std::array<double, nodes>, nodes>;
@@ -113,7 +126,7 @@ class IntegralFromZero {
 
   /// The integral's series, but for its constant, from values of f at the zeros of the Chebyshev polynomial. Whether f
   /// has as many digits as it should.
-  [[gnu::cold]] static bool expand(const std::array<double, nodes>& f, double from, double to, Cell& cell) {
+  [[gnu::cold]] bool expand(const std::array<double, nodes>& f, double from, double to, Cell& cell) const {
     std::array<double, nodes + 2> a{};
     const double half = 0.5 * (to - from);
     const auto [low, high] = std::minmax_element(f.begin(), f.end());
@@ -138,7 +151,7 @@ class IntegralFromZero {
       before = now;
       now = next;
     }
-    return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest + rounding;
+    return std::abs(a[nodes - 1]) + std::abs(a[nodes - 2]) <= 1e-10 * largest + rounding + nothing_;
   }
 
   /// Whether f is between the nodes and beyond the last ones what the cell says. Where it has no value the cell has to
@@ -156,7 +169,7 @@ class IntegralFromZero {
     } catch (const std::exception&) {
       return true;
     }
-    return off <= seen * largest;
+    return off <= seen * largest + nothing_;
   }
 
   double beyond(double from, double to) const {
@@ -169,7 +182,7 @@ class IntegralFromZero {
   }
 
   std::function<double(double)> f_;
-  double sign_ = 1.0, end_ = 0.0, total_ = 0.0;
+  double sign_ = 1.0, end_ = 0.0, total_ = 0.0, nothing_ = 0.0;
   bool whole_ = true;
   std::size_t most_cells_ = 0;
   std::vector<double> starts_;
