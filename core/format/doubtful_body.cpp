@@ -22,9 +22,10 @@ double dot(const Vector3& a, const Vector3& b) { return a[0] * b[0] + a[1] * b[1
 /// The frames of a body, its origin among them only where something stands on it.
 struct FrameOutline {
   std::vector<Vector3> places{};
-  Vector3 low{}, high{};   // of the box around them
-  double reach = 0.0;      // largest distance from the centre of mass [m]
-  std::string farthest{};  // BODY/FRAME
+  std::vector<double> from_com{};  // as places
+  Vector3 low{}, high{};           // of the box around them
+  double reach = 0.0;              // largest distance from the centre of mass [m]
+  std::string farthest{};          // BODY/FRAME
   Vector3 farthest_place{};
 
   double extent() const { return distance(low, high); }
@@ -33,23 +34,23 @@ struct FrameOutline {
     for (std::size_t i = 0; i < 3; ++i) gap[i] = std::max({low[i] - point[i], point[i] - high[i], 0.0});
     return std::hypot(gap[0], gap[1], gap[2]);
   }
-  /// From the origin outwards, the longest way from one place to the next.
+  /// From the centre of mass outwards, the longest way from one place to the next.
   double longest_gap() const {
-    std::vector<double> away{0.0};
-    for (const Vector3& place : places) away.push_back(distance(place, {}));
+    std::vector<double> away = from_com;
     std::ranges::sort(away);
-    double gap = 0.0;
+    double gap = away.empty() ? 0.0 : away.front();
     for (std::size_t i = 1; i < away.size(); ++i) gap = std::max(gap, away[i] - away[i - 1]);
     return gap;
   }
-  void add(const std::string& name, const Vector3& place, double from_com) {
+  void add(const std::string& name, const Vector3& place, double away) {
     for (std::size_t i = 0; i < 3; ++i) {
       low[i] = places.empty() ? place[i] : std::min(low[i], place[i]);
       high[i] = places.empty() ? place[i] : std::max(high[i], place[i]);
     }
     places.push_back(place);
-    if (from_com < reach || (from_com == reach && !farthest.empty() && farthest < name)) return;
-    reach = from_com;
+    from_com.push_back(away);
+    if (away < reach || (away == reach && !farthest.empty() && farthest < name)) return;
+    reach = away;
     farthest = name;
     farthest_place = place;
   }
