@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "component/served_formula.h"
 #include "freeplay/plugin.h"
 
 namespace freeplay {
@@ -37,6 +38,7 @@ struct ParameterValue {
   Formula formula;
   std::shared_ptr<const ParameterPoints> points;  ///< list, table; null: absent
   std::shared_ptr<const void> function_owner;     ///< keeps what `function` or `formula` points at
+  std::shared_ptr<const ServedFormula> served;    ///< what is known of `formula`; null: nothing
   std::shared_ptr<const ParameterBlock> law;      ///< contact_law, friction_law
 };
 

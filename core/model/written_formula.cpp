@@ -1,18 +1,35 @@
 #include "model/written_formula.h"
 
+#include <array>
 #include <memory>
 #include <utility>
 
 #include "base/format_into.h"
 #include "base/state_formula.h"
+#include "component/formula_calls.h"
 
 namespace freeplay {
 namespace {
 
-struct WrittenFormula {
+struct WrittenFormula final : ServedFormula {
+  WrittenFormula(const Expression& expression, Location at, bool inside)
+      : formula(expression), begin(std::move(at)), places_inside(inside) {}
+
+  bool may_hide() const noexcept override { return bounds.may_hide() || formula.switches() > 0; }
+  bool value(std::span<const double> variables, double& out) const noexcept override {
+    EvaluationFailure ignored;
+    return formula.value({0.0, variables, nullptr}, out, ignored);
+  }
+  void bound(const FormulaBounds::Span& span, FormulaBounds::Bounds& out) const noexcept override {
+    std::array<FormulaBounds::Bounds, 16> ignored;
+    if (static_cast<std::size_t>(formula.switches()) <= ignored.size()) return bounds.bound(span, out, ignored);
+    out.range = unknown_jet();
+  }
+
   StateFormula formula;
   Location begin;
   bool places_inside;
+  FormulaBounds bounds{formula};
 };
 
 std::span<const double> numbers(Span<const double> span) { return {span.data, span.size}; }
@@ -22,6 +39,7 @@ constexpr abi::FormulaTable written_formula{
     sizeof(abi::FormulaTable),
     [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message* message) noexcept {
       const auto& me = *static_cast<const WrittenFormula*>(self);
+      FormulaCalls::note(self, variables);
       const StateFormula::Input in{0.0, numbers(variables), nullptr};
       EvaluationFailure failure;
       const bool good = me.formula.slopes(in, *value, numbers(slopes), failure);
@@ -37,10 +55,10 @@ constexpr abi::FormulaTable written_formula{
 }  // namespace
 
 void set_formula(ParameterValue& value, const Expression& expression, Location begin, bool places_inside) {
-  const auto served =
-      std::make_shared<const WrittenFormula>(WrittenFormula{StateFormula(expression), std::move(begin), places_inside});
+  const auto served = std::make_shared<const WrittenFormula>(expression, std::move(begin), places_inside);
   value.formula = Formula(written_formula, served.get());
   value.function_owner = served;
+  value.served = served;
 }
 
 Status tell_failure(const Location& begin, bool places_inside, const EvaluationFailure& failure, Message& message) {

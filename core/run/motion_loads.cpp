@@ -28,7 +28,8 @@ constexpr int most_looks_at_ends = 200;                    // in one of one size
 
 }  // namespace
 
-MotionLoads::MotionLoads(RunContext& run) : run_(run), light_(run.system, run.allowed), channels_(run.system) {
+MotionLoads::MotionLoads(RunContext& run)
+    : run_(run), light_(run.system, run.allowed), channels_(run.system), joints_(run) {
   std::size_t channels = 0, switches = 0;
   for (const LoadChannels::Load& load : channels_.loads()) {
     Load own{&load, -1, {}, MotionPieces(load.formulas->channels.size())};
@@ -76,6 +77,7 @@ bool MotionLoads::follow(Fault& fault) {
     const State& state = inside ? run_.between : k == 0 ? run_.accepted : run_.trial;
     const Evaluation& e = inside ? run_.e_between : k == 0 ? run_.e_accepted : run_.e_trial;
     for (Load& load : loads_) channels_.follow(*load.load, state.a(), e, load.motion.end(k));
+    joints_.follow(k, point(state), e);
   }
   for (Load& load : loads_) load.motion.take(start, dt);
   return true;
@@ -92,35 +94,18 @@ double MotionLoads::value(const Course& course, double s) {
 }
 
 bool MotionLoads::show(Course& course) {
-  course.low = unbounded, course.high = -unbounded;
-  for (std::size_t k = 0; k < course.shown.size(); ++k) {
-    course.shown[k] = value(course, 0.25 * static_cast<double>(k) * course.part);
-    if (!std::isfinite(course.shown[k])) return false;
-    course.low = std::min(course.low, course.shown[k]), course.high = std::max(course.high, course.shown[k]);
+  std::array<double, 5>& shown = course.places.shown;
+  for (std::size_t k = 0; k < shown.size(); ++k) {
+    shown[k] = value(course, 0.25 * static_cast<double>(k) * course.places.part);
+    if (!std::isfinite(shown[k])) return false;
   }
-  const double dt = course.part * course.load.motion.length();
+  course.low = course.places.low(), course.high = course.places.high();
+  const double dt = course.places.part * course.load.motion.length();
   const double light = course.load.load->turns ? light_.torque(dt) : light_.force(dt);
   const double largest = std::max(std::abs(course.low), std::abs(course.high));
   const double part = run_.idle_loads.is_idle(course.load.idle) ? shown_alone : shown_part;
   course.allowed = std::max({part * (course.high - course.low), no_change * largest, light});
   return true;
-}
-
-Jet MotionLoads::Course::polynomial(double s) const {
-  // Newton's form by differences, x growing by 1 in each quarter.
-  const double by = part * load.motion.length() / 4.0;
-  const Jet x{4.0 * s / part, 1.0 / by, 0.0};
-  std::array<double, 5> difference = shown;
-  for (std::size_t order = 1; order < 5; ++order) {
-    for (std::size_t k = 4; k >= order; --k) {
-      difference[k] = (difference[k] - difference[k - 1]) / static_cast<double>(order);
-    }
-  }
-  Jet out = Jet::constant(difference[4]);
-  for (std::size_t k = 4; k > 0; --k) {
-    out = out * (x - Jet::constant(static_cast<double>(k - 1))) + Jet::constant(difference[k - 1]);
-  }
-  return out;
 }
 
 void MotionLoads::bound(const Course& course, double from, double to) {
@@ -138,18 +123,7 @@ void MotionLoads::bound(const Course& course, double from, double to) {
 
 // In the whole span, as its bounds say.
 bool MotionLoads::is_shown(const Course& course, double from, double to) const {
-  if (may_cross(course)) return false;
-  const double half = 0.5 * (to - from) * course.load.motion.length();
-  const Jet begin = course.polynomial(from), middle = course.polynomial(0.5 * (from + to)), end = course.polynomial(to);
-  // The second derivative of the polynomial is a parabola.
-  const auto bend = std::minmax({begin.acceleration, middle.acceleration, end.acceleration});
-  const double more = std::abs(begin.acceleration - 2.0 * middle.acceleration + end.acceleration);
-  IntervalJet off = bounds_.range;
-  off.value = off.value - hull(hull(Interval::at(begin.value), Interval::at(end.value)), Interval::at(middle.value));
-  off.rate = Interval::whole();
-  off.acceleration = off.acceleration - Interval{bend.first - more, bend.second + more};
-  tighten(off, bounds_.at_middle - middle, half);
-  return off.value.low >= -course.allowed && off.value.high <= course.allowed;
+  return !may_cross(course) && course.places.show(bounds_, from, to, course.load.motion.length(), course.allowed);
 }
 
 // Whether a switch that does not pass zero as evenly as the motion goes may be past it somewhere in the span that was
@@ -195,9 +169,10 @@ double MotionLoads::departure(Course& course, double from, double to) {
   bound(course, from, to);
   if (is_shown(course, from, to)) return no_departure;
   const double middle = 0.5 * (from + to);
-  const bool leaves = std::abs(bounds_.at_middle.value - course.polynomial(middle).value) > course.allowed;
+  const bool leaves = std::abs(bounds_.at_middle.value -
+                               course.places.polynomial(middle, course.load.motion.length()).value) > course.allowed;
   const bool crossing = may_cross(course) && crosses(course, middle);
-  if (leaves && to - from < same_begin * course.part) return from;
+  if (leaves && to - from < same_begin * course.places.part) return from;
   if (to - from >= finest_span) {
     const double earlier = departure(course, from, middle);
     if (earlier < no_departure) return earlier;
@@ -215,15 +190,15 @@ double MotionLoads::resolved(const Load& load, const Formula& formula) {
     double place = no_departure;
     for (std::size_t k = 0; k < MotionPieces::count && !(place < no_departure); ++k) {
       const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
-      const double to = std::min(course.part, from + 1.0 / static_cast<double>(MotionPieces::count));
+      const double to = std::min(course.places.part, from + 1.0 / static_cast<double>(MotionPieces::count));
       if (from < to) place = departure(course, from, to);
     }
     if (!(place < no_departure)) break;
     if (course.crosses) return place;
-    course.part = place > late_part * course.part ? place : 0.5 * course.part;
-    if (course.part < least_part) return least_part;
+    course.places.part = place > late_part * course.places.part ? place : 0.5 * course.places.part;
+    if (course.places.part < least_part) return least_part;
   }
-  return course.part;
+  return course.places.part;
 }
 
 bool MotionLoads::resolved(double& part, Fault& fault) {
@@ -232,6 +207,7 @@ bool MotionLoads::resolved(double& part, Fault& fault) {
   for (const Load& load : loads_) {
     for (const Formula& formula : load.formulas) part = std::min(part, resolved(load, formula));
   }
+  if (joints_.any()) part = std::min(part, joints_.resolved());
   longest_ = part < 1.0 ? next_longest * part * (run_.trial.t() - run_.accepted.t()) : unbounded;
   return true;
 }

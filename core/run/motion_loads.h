@@ -1,12 +1,13 @@
 // MotionLoads: what loads that depend on the motion do inside the step that was just made.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <vector>
 
 #include "base/formula_bounds.h"
 #include "run/context.h"
+#include "run/five_places.h"
+#include "run/joint_formulas.h"
 #include "run/light_loads.h"
 #include "run/load_channels.h"
 #include "run/motion_pieces.h"
@@ -20,9 +21,9 @@ class MotionLoads {
  public:
   explicit MotionLoads(RunContext& run);
 
-  bool any() const { return !loads_.empty(); }
+  bool any() const { return !loads_.empty() || joints_.any(); }
   /// For tests of what finds wrong runs: nothing is looked at.
-  void go_blind() { loads_.clear(); }
+  void go_blind() { loads_.clear(), joints_.go_blind(); }
 
   /// A longer step is not to be tried, as the last one showed [s].
   double longest() const { return longest_; }
@@ -37,7 +38,7 @@ class MotionLoads {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.longest_, self.loads_);
+    archive(self.longest_, self.loads_, self.joints_);
   }
 
  private:
@@ -71,20 +72,16 @@ class MotionLoads {
       archive(self.formulas);
     }
   };
-  /// What a formula is compared with, from the begin of the step to a part of it.
+  /// What a formula is compared with.
   struct Course {
     const Load& load;
     const Formula& formula;
-    const double* sides;  ///< that it keeps; null: the values decide
-    double part = 1.0;
-    std::array<double, 5> shown{};  ///< at the ends of quarters
-    double low = 0.0, high = 0.0;   ///< of these
-    double allowed = 0.0;           ///< by which it may be off
-    bool crosses = false;           ///< a switch changes its side
+    const double* sides;           ///< that it keeps; null: the values decide
+    FivePlaces places{};           ///< from the begin of the step to a part of it
+    double low = 0.0, high = 0.0;  ///< of what these show, or of the ends of the step
+    double allowed = 0.0;          ///< by which it may be off
+    bool crosses = false;          ///< a switch changes its side
     int looks = 0;
-
-    /// The polynomial of degree 4 through what is shown, with its derivatives by time.
-    Jet polynomial(double s) const;
   };
 
   bool follow(Fault& fault);
@@ -110,6 +107,7 @@ class MotionLoads {
   LightLoads light_;
   LoadChannels channels_;
   std::vector<Load> loads_;
+  JointFormulas joints_;
   double longest_ = unbounded;
   double followed_until_ = std::nan("");  ///< where the last step ended [s], after so many restarts
   long restarts_then_ = 0;

@@ -21,6 +21,18 @@ class MotionPieces {
 
   /// Values and rates at the end of piece k - 1, which is the begin of piece k.
   std::span<Jet> end(std::size_t k) { return ends_[k]; }
+  /// Rates where values alone are known: of the polynomial through the five. For after take().
+  void fit_rates() {
+    for (std::size_t c = 0; c < ends_[0].size(); ++c) {
+      const auto f = [&](std::size_t k) { return ends_[k][c].value; };
+      const double by = static_cast<double>(count) / (12.0 * dt_);
+      ends_[0][c].rate = by * (-25.0 * f(0) + 48.0 * f(1) - 36.0 * f(2) + 16.0 * f(3) - 3.0 * f(4));
+      ends_[1][c].rate = by * (-3.0 * f(0) - 10.0 * f(1) + 18.0 * f(2) - 6.0 * f(3) + f(4));
+      ends_[2][c].rate = by * (f(0) - 8.0 * f(1) + 8.0 * f(3) - f(4));
+      ends_[3][c].rate = by * (-f(0) + 6.0 * f(1) - 18.0 * f(2) + 10.0 * f(3) + 3.0 * f(4));
+      ends_[4][c].rate = by * (3.0 * f(0) - 16.0 * f(1) + 36.0 * f(2) - 48.0 * f(3) + 25.0 * f(4));
+    }
+  }
   /// Of the step: its begin and its length [s].
   void take(double start, double dt) { start_ = start, dt_ = dt; }
   double time(double s) const { return start_ + s * dt_; }

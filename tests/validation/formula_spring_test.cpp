@@ -79,6 +79,26 @@ TEST(FormulaSpring, StoresWhatActsInASmallPartOfItsWay) {
   EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-4);
 }
 
+// The same as a bump that is smooth, or has corners, along steps that are as long as the motion beside it lets them be.
+TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
+  for (const double width : {1e-2, 1e-3, 1e-4, 1e-5}) {
+    const std::string force = number(0.2 / (width * std::sqrt(std::numbers::pi)));
+    const std::string smooth = "spring: \"" + force + " N*exp(-((x - 0.4237 m)/(" + number(width) + " m))^2)\"";
+    const std::string corners = "spring: {interpolation: linear, points: [[0, 0], [" + number(0.4237 - width) +
+                                ", 0], [0.4237, " + number(0.2 / width) + "], [" + number(0.4237 + width) +
+                                ", 0], [2, 0]]}";
+    for (const std::string& spring : {smooth, corners}) {
+      for (const double accuracy : {1e-4, 1e-6, 1e-8}) {
+        const ModelRun run(
+            sled(spring, 0.0, 1.0, "end: 1, accuracy: " + number(accuracy) + ", output: {interval: 0.1}"));
+        ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+        EXPECT_NEAR(run.last("joint.rail.speed"), std::sqrt(0.8), 10.0 * accuracy) << spring;
+        EXPECT_NEAR(run.last("energy.potential"), 0.2, 1e-9) << spring;
+      }
+    }
+  }
+}
+
 // 2 v' = -3 v |v| from 4 m/s: v = 4/(1 + 6 t).
 TEST(FormulaSpring, ADamperMayBeQuadratic) {
   const ModelRun run(

@@ -1,0 +1,164 @@
+#include "run/joint_formulas.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <string_view>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+constexpr double kept_whole = std::numeric_limits<double>::infinity();
+constexpr double shown_in_run = 0.01;     // of a formula's range in the run
+constexpr double no_difference = 1e-12;   // of the largest value
+constexpr double found_place = 1.0 / 64;  // of the part that is looked at: where something begins
+constexpr double finest_way = 1e-9;       // of the step: shorter spans are not halved
+constexpr double put_off = 0.125;         // what begins later in the step is left to the next
+constexpr double least_share = 1e-6;      // of a step that it is shortened to at once
+constexpr int most_looks_at_one = 4000;   // at a formula in a step
+
+}  // namespace
+
+JointFormulas::JointFormulas(RunContext& run) : run_(run), light_(run.system, run.allowed) {
+  if (!run.adaptive) return;
+  std::size_t rows = 0, internal = 0;
+  for (std::size_t j = 0; j < run.model.joints.size(); ++j) {
+    const JointElement& element = run.model.joints[j];
+    if (element.parameters == nullptr || element.parameters->component == nullptr) continue;
+    const std::size_t first = courses_.size();
+    for (const Parameter& parameter : element.parameters->component->description.parameters) {
+      const auto value = element.parameters->values.find(std::string_view(parameter.name));
+      if (value != element.parameters->values.end()) add(static_cast<int>(j), parameter, value->second);
+    }
+    if (courses_.size() == first) continue;
+    joints_.push_back({static_cast<int>(j), first, courses_.size()});
+    rows = std::max(rows, at(element.layout.constraint_rows));
+    internal = std::max(internal, at(element.layout.internal_variables));
+  }
+  rate_.resize(internal), jacobian_.resize(12 * rows);
+  for (std::vector<double>* numbers : {&phi_, &nu_, &gamma_}) numbers->resize(rows);
+}
+
+void JointFormulas::add(int joint, const Parameter& parameter, const ParameterValue& value) {
+  if (value.served == nullptr || !value.served->may_hide()) return;
+  const std::string_view unit = parameter.unit == nullptr ? "" : parameter.unit,
+                         variables = parameter.variables == nullptr ? "" : parameter.variables;
+  const bool turns = run_.model.joints[at(joint)].layout.coordinate == Coordinate::angle;
+  const Course::Kind kind = unit == "m" ? Course::Kind::length : turns ? Course::Kind::torque : Course::Kind::force;
+  courses_.push_back({value.served.get(), kind, kind == Course::Kind::length && variables == "x: rad",
+                      MotionPieces(Formula::most_variables)});
+  calls_.push_back({value.function_owner.get()});
+}
+
+void JointFormulas::follow(std::size_t place, const Point& here, const Evaluation& e) {
+  for (const AskedJoint& asked : joints_) ask(asked, here, e);
+  for (std::size_t c = 0; c < courses_.size(); ++c) {
+    Course& course = courses_[c];
+    course.known = calls_[c].called && (place == 0 || course.known);
+    const std::span<Jet> variables = course.variables.end(place);
+    for (std::size_t k = 0; k < variables.size(); ++k) {
+      double& value = variables[k].value = calls_[c].variables[k];
+      if (!course.by_angle || place == 0) continue;
+      const double turn = 2.0 * std::numbers::pi;
+      value -= turn * std::round((value - course.variables.end(place - 1)[k].value) / turn);
+    }
+  }
+}
+
+// A joint that cannot be asked there has no say: the run finds out at its next state.
+void JointFormulas::ask(const AskedJoint& asked, const Point& here, const Evaluation& e) {
+  const std::span<FormulaCalls::Watched> all(calls_);
+  const FormulaCalls calls(all.subspan(asked.first, asked.end - asked.first));
+  const JointLayout& layout = run_.model.joints[at(asked.joint)].layout;
+  const JointRef& joint = run_.system.joints().handle(asked.joint);
+  const JointInput in = run_.system.joints().input(asked.joint, here, e);
+  const auto zeroed = [](std::vector<double>& numbers, std::size_t count) {
+    std::fill_n(numbers.begin(), count, 0.0);
+    return Span<double>(numbers.data(), count);
+  };
+  Message ignored;
+  if (layout.forces != 0) {
+    JointForces forces{};
+    forces.internal_rate = zeroed(rate_, at(layout.internal_variables));
+    joint.apply(in, forces, ignored);
+  }
+  if (const std::size_t rows = at(layout.constraint_rows); rows > 0) {
+    ConstraintRows made{zeroed(phi_, rows), zeroed(jacobian_, 12 * rows), zeroed(nu_, rows), zeroed(gamma_, rows)};
+    joint.constrain(in, made, ignored);
+  }
+}
+
+bool JointFormulas::show(Course& course) {
+  std::array<double, Formula::most_variables> variables{};
+  for (std::size_t k = 0; k < course.places.shown.size(); ++k) {
+    course.variables.at(0.25 * static_cast<double>(k) * course.places.part, variables);
+    double& value = course.places.shown[k];
+    if (!course.formula->value(variables, value) || !std::isfinite(value)) return false;
+  }
+  return true;
+}
+
+// The first place of the span where the formula is not what is shown.
+double JointFormulas::departure(Course& course, double from, double to) {
+  if (++course.looks > most_looks_at_one) return kept_whole;
+  std::array<IntervalJet, Formula::most_variables> ranges;
+  std::array<Jet, Formula::most_variables> middles;
+  course.variables.bound(from, to, ranges, middles);
+  const double middle = 0.5 * (from + to), length = course.variables.length();
+  FormulaBounds::Bounds bounds{unknown_jet(), {}};
+  course.formula->bound({.middle = course.variables.time(middle),
+                         .half = 0.5 * (to - from) * length,
+                         .ranges = ranges,
+                         .at_middle = middles},
+                        bounds);
+  if (course.places.show(bounds, from, to, length, course.allowed)) return kept_whole;
+  const bool leaves =
+      std::abs(bounds.at_middle.value - course.places.polynomial(middle, length).value) > course.allowed;
+  if (leaves && to - from < found_place * course.places.part) return from;
+  if (to - from < finest_way) return leaves ? middle : kept_whole;
+  const double earlier = departure(course, from, middle);
+  if (earlier < kept_whole) return earlier;
+  return leaves ? middle : departure(course, middle, to);
+}
+
+double JointFormulas::resolved(Course& course) {
+  FivePlaces& places = course.places;
+  places.part = 1.0;
+  if (!course.known || !show(course)) return 1.0;
+  course.low = std::min(course.low, places.shown[0]), course.high = std::max(course.high, places.shown[0]);
+  const double low = std::min(course.low, places.low()), high = std::max(course.high, places.high());
+  do {
+    const double dt = places.part * course.variables.length();
+    const double light = course.kind == Course::Kind::length   ? light_.length()
+                         : course.kind == Course::Kind::torque ? light_.torque(dt)
+                                                               : light_.force(dt);
+    course.allowed =
+        std::max({shown_in_run * (high - low), no_difference * std::max(std::abs(low), std::abs(high)), light});
+    course.looks = 0;
+    double place = kept_whole;
+    for (std::size_t k = 0; k < MotionPieces::count && !(place < kept_whole); ++k) {
+      const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
+      const double to = std::min(places.part, from + 1.0 / static_cast<double>(MotionPieces::count));
+      if (from < to) place = departure(course, from, to);
+    }
+    if (!(place < kept_whole)) return places.part;
+    places.part = place > put_off * places.part ? place : 0.5 * places.part;
+  } while (places.part >= least_share && show(course));
+  return std::max(places.part, least_share);
+}
+
+double JointFormulas::resolved() {
+  const double start = run_.accepted.t(), dt = run_.trial.t() - start;
+  double part = 1.0;
+  for (Course& course : courses_) {
+    course.variables.take(start, dt);
+    course.variables.fit_rates();
+    part = std::min(part, resolved(course));
+  }
+  return part;
+}
+
+}  // namespace freeplay

@@ -1,0 +1,72 @@
+// JointFormulas: what formulas and points that joints are given do inside the step that was just made.
+#pragma once
+
+#include <vector>
+
+#include "component/formula_calls.h"
+#include "run/context.h"
+#include "run/five_places.h"
+#include "run/light_loads.h"
+#include "run/motion_pieces.h"
+
+namespace freeplay {
+
+/// The force of a spring or a curve may change in a small part of the way that its variables go in a step, where no
+/// stage of an integrator asks for it. At five places of the step joints are asked what they ask their formulas for;
+/// along cubics between them the formulas are bounded, so that nothing is too narrow to be found. In runs with error
+/// control.
+class JointFormulas {
+ public:
+  [[gnu::cold]] explicit JointFormulas(RunContext& run);
+
+  bool any() const { return !joints_.empty(); }
+  /// For tests of what finds wrong runs: nothing is looked at.
+  void go_blind() { joints_.clear(), courses_.clear(); }
+  /// The begin (0), the ends of quarters of the step, and its end, one after another, as they are evaluated (events).
+  void follow(std::size_t place, const Point& here, const Evaluation& e);
+  /// The part of the step in which each formula is, to a hundredth of its range in the run, as a polynomial through
+  /// five places of it shows.
+  double resolved();
+
+  template <class Self, class Archive>
+  static void exchange(Self& self, Archive& archive) {
+    archive(self.courses_);
+  }
+
+ private:
+  /// A formula along the step.
+  struct Course {
+    const ServedFormula* formula;
+    enum class Kind { force, torque, length } kind;
+    bool by_angle;  ///< of a closed curve, as good as a turn farther
+    MotionPieces variables;
+    FivePlaces places{};
+    double low = unbounded, high = -unbounded;  ///< in the run
+    double allowed = 0.0;                       ///< by which it may be off
+    int looks = 0;
+    bool known = false;  ///< asked for at all places
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.low, self.high);
+    }
+  };
+  struct AskedJoint {
+    int joint;
+    std::size_t first, end;  ///< of courses_
+  };
+
+  [[gnu::cold]] void add(int joint, const Parameter& parameter, const ParameterValue& value);
+  void ask(const AskedJoint& asked, const Point& here, const Evaluation& e);
+  double resolved(Course& course);
+  bool show(Course& course);
+  double departure(Course& course, double from, double to);
+
+  RunContext& run_;
+  LightLoads light_;
+  std::vector<AskedJoint> joints_;
+  std::vector<Course> courses_;
+  std::vector<FormulaCalls::Watched> calls_;  // as courses_
+  std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;
+};
+
+}  // namespace freeplay
