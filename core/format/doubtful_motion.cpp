@@ -10,6 +10,7 @@
 
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
+#include "format/doubtful_points.h"
 #include "format/motion_course.h"
 #include "model/force_element.h"
 #include "model/rotation.h"
@@ -20,8 +21,6 @@ namespace {
 constexpr std::size_t most_drivers = 2000;  // that are looked at
 constexpr double table_beyond = 50.0;       // the end of a table, in runs
 constexpr double largest_turn = 0.5;        // in a fixed step [rad]
-constexpr int places_in_piece = 8;          // of a cubic table
-constexpr double overshoot = 0.25;          // by the range of its points: eight points a turn follow a sine to a fifth
 
 /// Numbers that are written in the text, and those of its parameters that have no dimension.
 std::vector<double> numbers_in(const CheckedValue& written) {
@@ -80,7 +79,7 @@ class MotionDoubts {
                                                  written->path(), last, span));
     }
     // Drivers may share a long table: it is looked at once.
-    if (looked_at_.insert(&table).second) judge_overshoot(table, *written);
+    if (looked_at_.insert(&table).second) doubt_overshoot(table, *written, {"t", " s"});
     if (!prescribes(driver.kind)) return;
     const auto [low, high] = std::ranges::minmax(table.values());
     const bool speeds = driver.kind == DriverKind::velocity,
@@ -159,29 +158,6 @@ class MotionDoubts {
       return true;
     }
     return false;
-  }
-
-  /// A cubic that leaves its points far on one side, as after a short pulse.
-  void judge_overshoot(const TimeTable& table, const CheckedValue& written) const {
-    if (table.is_straight()) return;
-    const std::span<const double> times = table.times(), values = table.values();
-    const auto [low, high] = std::ranges::minmax(values);
-    double most = overshoot * (high - low), reached = 0.0, when = 0.0;
-    for (std::size_t i = 1; i < times.size(); ++i) {
-      for (int k = 1; k < places_in_piece; ++k) {
-        const double t = times[i - 1] + (times[i] - times[i - 1]) * k / places_in_piece;
-        Jet jet;
-        EvaluationFailure failure;
-        if (!table.evaluate(t, jet, failure)) return;
-        const double beyond = std::max(jet.value - high, low - jet.value);
-        if (beyond > most) most = beyond, reached = jet.value, when = t;
-      }
-    }
-    if (!(most > overshoot * (high - low))) return;
-    written.warn("doubtful-value",
-                 fmt::format("the cubic through the points of '{}' comes to {:.4g} at t = {:.4g} s, but its points lie "
-                             "between {:.4g} and {:.4g}: write 'interpolation: linear', or give more points",
-                             written.path(), reached, when, low, high));
   }
 
   /// Largest slope between two points.

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "format/arc_keys.h"
+#include "format/doubtful_points.h"
 #include "format/draft.h"
 #include "format/parameter_tree.h"
 #include "format/point_parameters.h"
@@ -23,6 +24,8 @@ namespace freeplay {
 namespace {
 
 constexpr std::size_t most_curve_points = 1000;  // of a curve
+// By which a cubic may turn back between points that go on, by their range: nine points follow a corner so.
+constexpr double turns_back = 0.025;
 
 bool is_law(ParameterKind kind) { return kind == ParameterKind::contact_law || kind == ParameterKind::friction_law; }
 
@@ -285,9 +288,10 @@ class ParameterCheck {
     TableVariables variables;
     for (const VariableRow& row : variables_of(parameter)) variables.add(row.name, unit_in_table(row.unit).dimension);
     if (written.node().is_map()) {
-      const Dimension of_x = unit_in_table(variables_of(parameter).front().unit).dimension;
+      const VariableRow first = variables_of(parameter).front();
+      const Dimension of_x = unit_in_table(first.unit).dimension;
       if (written.node().find("arcs") != nullptr) return read_arcs(written, of_x, unit.dimension, value);
-      return read_points(of_x, unit.dimension, written, value);
+      return read_points(first.name, of_x, unit.dimension, written, value);
     }
     const std::optional<Expression> expression = written.formula(variables, unit.dimension);
     if (!expression) return false;
@@ -296,8 +300,8 @@ class ParameterCheck {
   }
 
   /// `spring: {points: [[x, y], ...], interpolation: cubic}`: a function of the first variable.
-  static bool read_points(const Dimension& of_x, const Dimension& of_y, const CheckedValue& written,
-                          ParameterValue& value) {
+  static bool read_points(const std::string& variable, const Dimension& of_x, const Dimension& of_y,
+                          const CheckedValue& written, ParameterValue& value) {
     MapReader map(written, "points");
     const auto points = map.require("points"), interpolation = map.find("interpolation"), ends = map.find("ends");
     map.finish();
@@ -332,8 +336,10 @@ class ParameterCheck {
                                             y.front(), y.back()));
       return false;
     }
-    set_table_formula(value, std::move(x), std::move(y), static_cast<Interpolation>(*word),
-                      periodic ? SplineEnds::periodic : SplineEnds::natural);
+    const TimeTable& table = set_table_formula(value, std::move(x), std::move(y), static_cast<Interpolation>(*word),
+                                               periodic ? SplineEnds::periodic : SplineEnds::natural);
+    const auto after = [](const Dimension& of) { return of == dimension::none ? "" : " " + si_unit(of); };
+    doubt_overshoot(table, *points, {variable, after(of_x), after(of_y), turns_back, !(of_y == dimension::length)});
     return true;
   }
 

@@ -91,8 +91,8 @@ constexpr abi::FormulaTable table_formula{
 
 }  // namespace
 
-void set_table_formula(ParameterValue& value, std::vector<double> x, std::vector<double> y, Interpolation interpolation,
-                       SplineEnds ends) {
+const TimeTable& set_table_formula(ParameterValue& value, std::vector<double> x, std::vector<double> y,
+                                   Interpolation interpolation, SplineEnds ends) {
   const double low = x.front(), high = x.back();
   const bool repeats = ends == SplineEnds::periodic;
   TimeTable table(std::move(x), std::move(y), interpolation, ends, repeats ? Outside::repeat : Outside::hold);
@@ -100,6 +100,7 @@ void set_table_formula(ParameterValue& value, std::vector<double> x, std::vector
   value.formula = Formula(table_formula, served.get());
   value.function_owner = served;
   value.served = served;
+  return served->table;
 }
 
 }  // namespace freeplay

@@ -1,4 +1,5 @@
 """Points on curves: cams lift and press as the closed form of their polynomial says."""
+import json
 import math
 import unittest
 
@@ -59,6 +60,18 @@ simulation: {end: 0.25, output: {interval: 1 ms, channels: ["*", "body.*.ay"]}, 
             place = (2 - row) % 8
             self.assertAlmostEqual(heights[place] / 1000, columns["body.follower.y"][row], delta=1e-9)
         self.assertLess(max(map(abs, columns["energy.residual"])), 1e-5)
+
+    def test_points_between_which_the_curve_dips_in_a_dwell_are_doubted(self):
+        for step, said in ((60, True), (20, False)):
+            points = ["[%d deg, %r mm]" % (x, 40 + (0.0 if abs(x - 180) > 60 else 5 * (1 + math.cos(math.radians(x - 180) * 3))))
+                      for x in range(0, 361, step)]
+            text = self.TEXT % ("{points: [%s], ends: periodic}" % ", ".join(points), "accuracy: 1 um")
+            found = json.loads(self.freeplay("validate", self.model(text), "--json")[0])["messages"]
+            found = [m for m in found if "cubic" in m["message"]]
+            self.assertEqual(said, bool(found), found)
+            if said:
+                self.assertEqual(("doubtful-value", 9), (found[0]["id"], found[0]["line"]))
+                self.assertIn("the two points beside it are 0.04 and 0.04: give more points", found[0]["message"])
 
     def test_a_bead_on_a_wave_keeps_its_energy(self):
         columns = self.run_model("""

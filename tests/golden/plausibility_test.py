@@ -270,6 +270,7 @@ SOUND = [
     (CART, "value: 0.1*sin(3*t)", "table: {unit: mm, points: [[0, 0], [0.125, 70.7], [0.375, 70.7], [0.625, -70.7], [0.875, -70.7], [1, 0]]}"),
     (CART, "kind: position, value: 0.1*sin(3*t)",
      "kind: force, table: {points: [[0, 0], [0.5, 0], [0.501, 1000], [0.502, 0], [2, 0]], interpolation: linear}"),
+    (CART, "value: 0.1*sin(3*t)", "table: {points: [[0, 0.1], [0.17, 0.1], [0.29, 0.1], [2, 0.1]]}"),
 ]
 
 

@@ -1,4 +1,5 @@
 """Springs whose force goes through given points."""
+import json
 import math
 import unittest
 
@@ -25,11 +26,11 @@ def natural_spline(points):
     return [row[n] for row in rows]
 
 
-def through_points(x, cubic):
+def through_points(x, cubic, points=POINTS):
     """The force at x; beyond the ends straight on."""
-    bends = natural_spline(POINTS) if cubic else [0.0] * len(POINTS)
-    i = max(0, min(len(POINTS) - 2, sum(x >= p for p, _ in POINTS) - 1))
-    (a, fa), (b, fb) = POINTS[i:i + 2]
+    bends = natural_spline(points) if cubic else [0.0] * len(points)
+    i = max(0, min(len(points) - 2, sum(x >= p for p, _ in points) - 1))
+    (a, fa), (b, fb) = points[i:i + 2]
     inside, h = max(a, min(b, x)), b - a
     u, v = (b - inside) / h, (inside - a) / h
     value = u * fa + v * fb + ((u ** 3 - u) * bends[i] + (v ** 3 - v) * bends[i + 1]) * h * h / 6
@@ -102,3 +103,36 @@ simulation: {end: 0.5, %s, output: {interval: 2 ms}}
 
 if __name__ == "__main__":
     unittest.main()
+
+    # Three of them a bump stop, a damper whose force bends at a speed and a rubber stop to both sides, with the piece that
+    # swings out; then such as springs have.
+    SWING = (([(-10, 0), (0, 0), (5, 0), (8, 0), (10, 3000)], 3), ([(-10, -1000), (-1, -800), (0, 0), (1, 800), (10, 1000)], 0),
+             ([(-10, -900), (-5, 0), (5, 0), (10, 900)], 1))
+    SMOOTH = ([(x, 3 * x ** 3) for x in range(-6, 7, 2)], [(x, 500 * math.tanh(x / 4)) for x in range(-12, 13, 4)],
+              [(x, x * x) for x in range(-6, 7, 2)], [(x, 300 * math.sin(x)) for x in range(-9, 10)], [(-10, -900), (0, 0), (10, 600)],
+              [(x, 7) for x in (0, 1.7, 2.9, 5.3)], [(0, 0), (10, 3)])
+
+    def test_are_doubted_where_their_cubic_turns_back_between_points_that_go_on(self):
+        for points, piece in self.SWING:
+            for keys, said in ((", interpolation: linear", False), ("", True)):
+                with self.subTest(points=points, keys=keys):
+                    found = self.doubts(points, keys)
+                    self.assertEqual(said, bool(found), found)
+            message = found[0]
+            (a, fa), (b, fb) = points[piece:piece + 2]
+            outside = lambda v: max(v - max(fa, fb), min(fa, fb) - v)
+            place = max((a + (b - a) * k / 8 for k in range(1, 8)), key=lambda x: outside(through_points(x, True, points)))
+            self.assertEqual(10, message["line"])
+            self.assertIn("'forces.tie.spring.points' comes to %.4g N at x = %.4g m, but the two points beside it are %.4g and %.4g: write "
+                          "'interpolation: linear', or give more points" % (through_points(place, True, points), place / 1e3, min(fa, fb),
+                                                                           max(fa, fb)), message["message"])
+        for points in self.SMOOTH:
+            with self.subTest(points=points):
+                self.assertEqual([], self.doubts(points, ""))
+
+    def doubts(self, points, keys):
+        text = "[%s]" % ", ".join("[%r mm, %r N]" % point for point in points)
+        self.write("m.yaml", "freeplay: 1\n" + (self.TEXT % ("linear", "step: 1 ms")).lstrip("\n").replace(
+            "[[-20 mm, -900 N], [-5 mm, -60 N], [0, 0], [10 mm, 200 N], [30 mm, 1.5 kN]], interpolation: linear", text + keys))
+        found = json.loads(self.freeplay("validate", "m.yaml", "--json")[0])["messages"]
+        return [message for message in found if message["id"] == "doubtful-value" and "cubic" in message["message"]]
