@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include <Eigen/Core>
@@ -24,6 +25,8 @@ constexpr double by_sound = 1e-6;        // stop of a body [s]: sound crosses 5 
 constexpr double far_below_step = 0.01;  // of a fixed step, or of the time between rows
 constexpr double most_beyond = 0.1;      // of the way between the ends of a stop
 constexpr double least_beyond = 0.01;    // rad, or of the size of the model
+constexpr double in_turns = 0.5 / std::numbers::pi;
+constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
 
 class Elements {
  public:
@@ -37,6 +40,7 @@ class Elements {
       if (judge_idle(j)) continue;
       judge_damping(j);
       judge_ends(j);
+      judge_turn(j);
     }
   }
 
@@ -223,6 +227,26 @@ class Elements {
                       "check its ends and their units, and the start",
                       element.name, here, unit, beyond, unit, lower, upper, unit),
           element);
+  }
+
+  /// A torsion spring wound by a whole turn: from an angle of -10 deg it is one to the direction of 350 deg.
+  void judge_turn(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const double free = number(element, "free_angle"), here = e_.coordinate[at(j)],
+                 stiffness = number(element, "stiffness");
+    const double turns = std::round((here - free) * in_turns), same = free + turns / in_turns;
+    const bool by_one = std::abs(turns) == 1.0 && std::abs(here - same) * in_turns < most_unwound;
+    const auto spring = element.parameters->values.find("spring");
+    const bool acts = stiffness != 0.0 || (spring != element.parameters->values.end() && spring->second.given);
+    if (element.ideal_layout().coordinate != Coordinate::angle || !by_one || !acts) return;
+    const auto degrees = [](double angle) { return fmt::format("{:.4g} deg", 360.0 * in_turns * angle); };
+    doubt(
+        "doubtful-angle",
+        fmt::format("'{}' starts wound by {}, from its free angle of {} to {}, where it starts: write 'free_angle: {}' "
+                    "if no turn is meant; if one is, write its torque besides{}",
+                    element.name, degrees(here - free), degrees(free), degrees(here), degrees(same),
+                    stiffness > 0.0 ? fmt::format(", 'preload: {:.4g} N*m'", stiffness * (same - free)) : ""),
+        element);
   }
 
   bool is_doubted(const JointElement& element) const {

@@ -77,6 +77,29 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
                         self.assertEqual(["law-range"], self.ids(), self.trust)
                         self.assertIn(found, self.trust["reasons"][0]["message"])
 
+    def test_a_torsion_spring_that_starts_wound_by_a_turn_is_doubtful(self):
+        keys = "stiffness: 2000, free_angle: 30 deg"
+        for start, free, found in ((-10, 350, -10), (390, 30, 390), (20, -300, 60), (10, -280, None), (0, 720, None), (-10, -10, None)):
+            with self.subTest(start=start, free=free):
+                self.run_model((TORSION % start).replace(keys, "stiffness: 20, free_angle: %d deg" % free))
+                if found is None:
+                    self.assertEqual("good", self.trust["verdict"], self.trust)
+                    continue
+                self.assertEqual(["doubtful-input"], self.ids(), self.trust)
+                torque = 20 * math.radians(found - free)
+                self.assertIn("'s' starts wound by %d deg, from its free angle of %d deg to %d deg, where it starts: write 'free_angle: %d deg' if no turn "
+                              "is meant; if one is, write its torque besides, 'preload: %.4g N*m'" % (start - free, free, start, found, torque),
+                              self.trust["reasons"][0]["message"])
+                wound = self.summary["forces"]["s"]["max_torque"]
+                self.run_model((TORSION % start).replace(keys, "stiffness: 20, free_angle: %d deg, preload: %.17g" % (found, torque)))
+                self.assertEqual("good", self.trust["verdict"], self.trust)
+                self.assertAlmostEqual(wound, self.summary["forces"]["s"]["max_torque"], delta=1e-6 * wound)
+        self.run_model((TORSION % -10).replace(keys, "damping: 0.1, free_angle: 350 deg"))
+        self.assertEqual("good", self.trust["verdict"], self.trust)
+        self.write("model.yaml", (TORSION % -10).replace(keys, "spring: 2 kN*m*x^3, free_angle: 350 deg"))
+        messages = json.loads(self.freeplay("validate", "model.yaml", "--json")[0])["messages"]
+        self.assertIn(("doubtful-angle", 5, 10), [(m["id"], m["line"], m["column"]) for m in messages])
+
     def test_a_hill_that_a_step_goes_over_is_shown_by_rows(self):
         # A bead with 0.1 m/s rises by 0.51 mm.
         for height, width, found in (("1 mm", 3, True), ("0.4 mm", 3, True), ("0.4 mm", 200, False), ("1 mm", 200, False)):
