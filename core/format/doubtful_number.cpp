@@ -39,6 +39,7 @@ constexpr UsualRange usual_ranges[] = {
 
 // Moduli of the bodies that a contact is as stiff as: a tenth of soft rubber's, ten times diamond's.
 constexpr double softest_contact = 1e5, hardest_contact = 1.2e13;  // [Pa]
+constexpr double most_off = 1e3;                                   // from the material beside it
 
 constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are simulated
 constexpr double earth_gravity = 9.81;       // [m/s^2], within 3 %: 9.78 to 9.83 on the ground, 10 in schools
@@ -301,12 +302,18 @@ void doubt_contact_stiffness(const CheckedValue& entry, const ParameterBlock& bl
                              double scale) {
   const auto stiffness = given_stiffness(block, layout, scale);
   if (!stiffness) return;
-  if (stiffness->modulus >= softest_contact && stiffness->modulus <= hardest_contact) return;
+  const double modulus = stiffness->modulus, own = layout.contact_modulus;
+  const bool of_none = modulus < softest_contact || modulus > hardest_contact;
+  if (!of_none && !(own > most_off * modulus || modulus > most_off * own)) return;
+  std::string against = "moduli go from 1 MPa (rubber) to 1200 GPa (diamond)", unit;
+  if (!of_none) against = fmt::format("its material makes {:.2g} Pa", own);
+  if (!of_none && own > modulus)
+    unit = fmt::format(", as in '{:.4g} N/mm{}'", stiffness->value, stiffness->unit.substr(3));
   entry.warn_at_key(
       "doubtful-value",
-      fmt::format("{} of '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: moduli go from 1 MPa (rubber) to "
-                  "1200 GPa (diamond); check the number and its unit",
-                  stiffness->name, entry.key(), stiffness->value, stiffness->unit, stiffness->modulus));
+      fmt::format("{} of '{}' is {:.4g} {}, as of bodies with a modulus of {:.2g} Pa: {}; "
+                  "check the number and its unit{}",
+                  stiffness->name, entry.key(), stiffness->value, stiffness->unit, modulus, against, unit));
 }
 
 }  // namespace freeplay

@@ -94,6 +94,11 @@ void suspect_bodies(const System& system, Suspects& suspects) {
   }
 }
 
+std::string words_of(const ContactStiffness& given, const JointElement& joint, bool soft, const char* what) {
+  return fmt::format("{} of joint '{}' is {:.3g} {}: {}; {}{}", given.name, joint.name, given.value, given.unit, what,
+                     soft ? "is it meant in N/mm" : "check its unit", soft ? given.unit.substr(3) : "");
+}
+
 void suspect_materials(const System& system, Suspects& suspects) {
   const Model& model = system.model();
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
@@ -108,11 +113,8 @@ void suspect_materials(const System& system, Suspects& suspects) {
     if (!joint.parameters || !(joint.has_play || joint.is_force)) continue;
     const auto given = given_stiffness(*joint.parameters, layout, system.size());
     if (!given) continue;
-    const auto words = [&](const char* what) {
-      return fmt::format("{} of joint '{}' is {:.3g} {}: {}", given->name, joint.name, given->value, given->unit, what);
-    };
-    suspects.add(softest / given->modulus, [&] { return words("softer than rubber; is it meant in N/mm^n"); });
-    suspects.add(given->modulus / stiffest, [&] { return words("stiffer than diamond; check its unit"); });
+    suspects.add(softest / given->modulus, [&] { return words_of(*given, joint, true, "softer than rubber"); });
+    suspects.add(given->modulus / stiffest, [&] { return words_of(*given, joint, false, "stiffer than diamond"); });
   }
 }
 
@@ -215,11 +217,16 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
 // Rubber does bear a load, but not that of a machine of metal.
 void suspect_soft_joint(const System& system, const Wreck& wreck, Suspects& suspects) {
   if (wreck.joint < 0) return;
-  const double modulus = system.joints().layout(wreck.joint).contact_modulus;
+  const JointElement& joint = system.model().joints[at(wreck.joint)];
+  const JointLayout& layout = system.joints().layout(wreck.joint);
+  const double modulus = layout.contact_modulus;
   suspects.add(soft / modulus, [&] {
     return fmt::format("E and nu of joint '{}' make an E* of {:.3g} Pa, as of rubber: are they meant in GPa",
-                       system.model().joints[at(wreck.joint)].name, modulus);
+                       joint.name, modulus);
   });
+  if (!joint.parameters) return;
+  const auto given = given_stiffness(*joint.parameters, layout, system.size());
+  if (given) suspects.add(soft / given->modulus, [&] { return words_of(*given, joint, true, "as of rubber"); });
 }
 
 // Steps of one size alone can be too long.

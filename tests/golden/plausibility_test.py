@@ -107,6 +107,7 @@ MISTAKES = [
     (CRANK, GUIDE, "", "left-free", "coupler", "no start is given for 'coupler', 'slider'",
      {"slider: {": "slider: {pose: {position: [0.14, 0]}, com: [0, 0.01], "}),
     (CRANK, "restitution: 0.9", "restitution: 0.9, K: 1e3", VALUE, "wrist", "rubber"),
+    (CRANK, "restitution: 0.9", "restitution: 0.9, K: 2e6", VALUE, "wrist", "its material makes 1.1e+11 Pa; check the number and its unit, as in '2e+06 N/mm^1.5'"),
     (CRANK, "restitution: 0.9}", "restitution: 0.9}\n      friction: {law: coulomb-tanh, mu: 20}", VALUE, "20}", "coefficients of friction"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 0.0005\n      initial: {eccentricity: [0.002, 0]}",
      "doubtful-clearance", "wrist", "deep in its wall"),
