@@ -196,14 +196,9 @@ class Trust(ProgramTest):
                             ((spring[0], spring[1] % "stiffness: 5e8"), "'s' acts with"),
                             ((spring[0], spring[1] % "stiffness: 10, damping: 1e9"), "'s' acts with"),
                             (("drivers:", "forces: {p: {type: force, at: slider, value: [3e6, 0]}}\ndrivers:"), "force 'p' is 3e+06 N"),
-                            (("restitution: 0.9", "restitution: 0.9, K: 5e3"), "K of joint 'wrist' is 5e+03 N/m^1.5: softer than rubber; is it meant in N/mm^1.5"),
-                            (("restitution: 0.9", "restitution: 0.9, K: 2.1e6"), "K of joint 'wrist' is 2.1e+06 N/m^1.5: as of rubber; is it meant in N/mm^1.5")]:
+                            (("restitution: 0.9", "restitution: 0.9, K: 5e3"), "K of joint 'wrist' is 5e+03 N/m^1.5: softer than rubber; is it meant in N/mm^1.5")]:
             with self.subTest(part):
                 self.assert_cause(part, changes=(wrong,))
-
-        # As they are meant.
-        self.run_model(slider_crank(("restitution: 0.9", "restitution: 0.9, K: 2.1e6 N/mm^1.5")))
-        self.assertEqual("good", self.trust["verdict"], self.trust)
 
     def test_a_jump_of_a_motion_is_a_cause(self):
         table = "kind: angle, table: {points: [[0, 0], [10 ms, 0], [10.05 ms, 5], [20 ms, 5]], interpolation: linear}"

@@ -1,9 +1,10 @@
 """Verdicts on forces that torques make, springs that drive, hills inside of steps, and second runs that end early."""
 import json
 import math
+import os
 import unittest
 
-from program import ProgramTest
+from program import ROOT, ProgramTest
 
 # An arm on a torsion spring of 2000 N m/rad that is slack at 30 degrees.
 TORSION = """freeplay: 1
@@ -99,6 +100,17 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
         self.write("model.yaml", (TORSION % -10).replace(keys, "spring: 2 kN*m*x^3, free_angle: 350 deg"))
         messages = json.loads(self.freeplay("validate", "model.yaml", "--json")[0])["messages"]
         self.assertIn(("doubtful-angle", 5, 10), [(m["id"], m["line"], m["column"]) for m in messages])
+
+    def test_a_stiffness_of_steel_in_another_unit_is_the_cause_of_a_journal_that_goes_through_its_bearing(self):
+        with open(os.path.join(ROOT, "mechanisms", "slider-crank.yaml"), encoding="utf-8") as file:
+            steel = file.read().replace("restitution: 0.9}", "restitution: 0.9, K: %s}")
+        self.run_model(steel % "2.1e6 N/mm^1.5")
+        self.assertEqual("good", self.trust["verdict"], self.trust)
+        for text in (steel, steel.replace("      material: {E: 207 GPa, nu: 0.3}\n", "")):
+            self.write("model.yaml", text % "2.1e6")
+            _, err = self.freeplay("run", "model.yaml", "--force", "--out", "r", code=4)
+            self.assertIn("; likely cause: K of joint 'wrist' is 2.1e+06 N/m^1.5: as of rubber; is it meant in N/mm^1.5", err)
+            self.assertEqual("material" in text, "its material makes 1.1e+11 Pa; check the number and its unit, as in '2.1e+06 N/mm^1.5'" in err)
 
     def test_a_hill_that_a_step_goes_over_is_shown_by_rows(self):
         # A bead with 0.1 m/s rises by 0.51 mm.
