@@ -27,6 +27,7 @@ constexpr double most_beyond = 0.1;      // of the way between the ends of a sto
 constexpr double least_beyond = 0.01;    // rad, or of the size of the model
 constexpr double in_turns = 0.5 / std::numbers::pi;
 constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
+constexpr double same_ratio = 1e-6;     // of a belt and of a gear between its pulleys
 
 class Elements {
  public:
@@ -41,6 +42,7 @@ class Elements {
       judge_damping(j);
       judge_ends(j);
       judge_turn(j);
+      judge_belt(j);
     }
   }
 
@@ -58,37 +60,49 @@ class Elements {
     return body_of(marker) == ground ? std::string("ground") : model_.bodies[at(body_of(marker))].name;
   }
 
-  std::optional<Eigen::Vector3d> line_of(const JointElement& element) const {
+  Eigen::Vector3d apart(const JointElement& element) const {
     const double* a = e_.markers[at(element.marker_a)].position;
     const double* b = e_.markers[at(element.marker_b)].position;
-    const Eigen::Vector3d apart(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-    if (apart.norm() < one_place) return std::nullopt;
-    return apart.normalized();
+    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  }
+  std::optional<Eigen::Vector3d> line_of(const JointElement& element) const {
+    const Eigen::Vector3d between = apart(element);
+    if (between.norm() < one_place) return std::nullopt;
+    return between.normalized();
   }
 
-  /// Rate of what the element acts along, by all velocities: its coordinate, or the distance of its ends.
-  std::optional<MatrixXd> rate_of(int j) const {
-    const JointElement& element = model_.joints[at(j)];
-    double row[12] = {}, bias = 0.0;
-    if (element.ideal_layout().coordinate != Coordinate::none) {
-      system_.joints().coordinate_row(j, e_, row, bias);
-    } else {
-      const std::optional<Eigen::Vector3d> line = line_of(element);
-      if (!line) return std::nullopt;
-      for (int k = 0; k < 2; ++k) {
-        const int marker = k == 0 ? element.marker_a : element.marker_b;
-        if (body_of(marker) == ground) continue;
-        double along[6] = {};
-        for (int i = 0; i < 3; ++i) along[i] = (k == 0 ? -1.0 : 1.0) * (*line)[i];
-        system_.markers().row(marker, along, e_, row + at(k * width()));
-      }
-    }
+  /// In the columns of all velocities, from those of the two bodies.
+  MatrixXd spread(const JointElement& element, const double* row) const {
     MatrixXd rate = MatrixXd::Zero(1, system_.layout().nv());
     const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
     for (int k = 0; k < 2; ++k) {
       for (int c = 0; c < width() && bodies[k] != ground; ++c) rate(0, width() * bodies[k] + c) += row[width() * k + c];
     }
     return rate;
+  }
+  /// Rate at which the second end goes ahead of the first along a direction, and at which both turn about z.
+  MatrixXd rate_of_ends(const JointElement& element, const Eigen::Vector3d& along, double turn_a, double turn_b) const {
+    double row[12] = {};
+    for (int k = 0; k < 2; ++k) {
+      const int marker = k == 0 ? element.marker_a : element.marker_b;
+      if (body_of(marker) == ground) continue;
+      const Eigen::Vector3d way = k == 0 ? -along : along;
+      const double part[6] = {way[0], way[1], way[2], 0.0, 0.0, k == 0 ? turn_a : turn_b};
+      system_.markers().row(marker, part, e_, row + at(k * width()));
+    }
+    return spread(element, row);
+  }
+
+  /// Rate of what the element acts along, by all velocities: its coordinate, or the distance of its ends.
+  std::optional<MatrixXd> rate_of(int j) const {
+    const JointElement& element = model_.joints[at(j)];
+    if (element.ideal_layout().coordinate == Coordinate::none) {
+      const std::optional<Eigen::Vector3d> line = line_of(element);
+      return line ? std::optional(rate_of_ends(element, *line, 0.0, 0.0)) : std::nullopt;
+    }
+    double row[12] = {}, bias = 0.0;
+    system_.joints().coordinate_row(j, e_, row, bias);
+    return spread(element, row);
   }
 
   // --- what does nothing -----------------------------------------------------------------------------------------
@@ -246,6 +260,32 @@ class Elements {
                     "if no turn is meant; if one is, write its torque besides{}",
                     element.name, degrees(here - free), degrees(free), degrees(here), degrees(same),
                     stiffness > 0.0 ? fmt::format(", 'preload: {:.4g} N*m'", stiffness * (same - free)) : ""),
+        element);
+  }
+
+  /// A belt that wants another ratio of its pulleys than the joints leave them, as where gears turn one the other way.
+  void judge_belt(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const double first = number(element, "first_radius"), second = number(element, "second_radius");
+    const auto strands = element.parameters->values.find("strands");
+    const Eigen::Vector3d line = apart(element);
+    if (!(first > 0.0 && second > 0.0) || strands == element.parameters->values.end() || line.norm() < one_place)
+      return;
+    // How far both turn against the line of their centres.
+    const Eigen::Vector3d back = Eigen::Vector3d(line[1], -line[0], 0.0) / line.squaredNorm();
+    const MatrixXd free = null_space(constraints().topRows(system_.layout().first_driver_row()));
+    const MatrixXd a = rate_of_ends(element, back, 1.0, 0.0) * free, b = rate_of_ends(element, back, 0.0, 1.0) * free;
+    if (free.cols() == 0 || a.norm() < counts_as_motion || b.norm() < counts_as_motion) return;
+    const double ratio = a.row(0).dot(b.row(0)) / a.squaredNorm();
+    const double sense = strands->second.word == 0 ? 1.0 : -1.0, own = sense * first / second;
+    if ((b - ratio * a).norm() > counts_as_motion * b.norm() || std::abs(ratio - own) < same_ratio * std::abs(own))
+      return;
+    doubt(
+        "doubtful-value",
+        fmt::format("'{}' turns '{}' by {:.4g} of '{}', but the joints turn it by {:.4g}, which stretches the belt by "
+                    "{:.3g} m in each turn: check 'strands' and the radii, or the ratio of the gear",
+                    element.name, body_name(element.marker_b), own, body_name(element.marker_a), ratio,
+                    std::abs(first - sense * ratio * second) / in_turns),
         element);
   }
 

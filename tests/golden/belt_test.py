@@ -47,6 +47,43 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
         self.assertEqual({"starts-inside", "doubtful-length"}, set(found))
         self.assertIn("'50 mm'", found["doubtful-length"])
 
+    # Straight, by an idler, and with the second pulley the other way round in its joint.
+    GEARS = (("  g: {type: gear, of: [s, l], ratio: %s}\n", "", ""),
+             ("  i: {type: revolute, between: [ground, idler]}\n  g: {type: gear, of: [s, i], ratio: -2}\n  h: {type: gear, of: [i, l], ratio: -%s/2}\n",
+              ", idler: {mass: 1, inertia: 0.01}", ""),
+             ("  g: {type: gear, of: [s, l], ratio: -%s}\n", "", "[large, ground/l]"))
+
+    def test_one_against_a_gear_is_doubted(self):
+        for gears, bodies, ends in self.GEARS:
+            for strands, ratio, found in (("open", "(5/12)", 0), ("crossed", "(-5/12)", 0), ("open", "(-5/12)", 0.05 * 4 * math.pi),
+                                          ("crossed", "(5/12)", 0.05 * 4 * math.pi), ("open", "0.5", 2 * math.pi * 0.01)):
+                for drive in ("kind: angle, value: '%s'", "kind: torque, value: '%s'"):
+                    with self.subTest(gears=gears, strands=strands, ratio=ratio, drive=drive):
+                        text = (self.TEXT % (400, strands, "0 N*m", "0", 1, "step: 1 ms")).replace("kind: angle, value: \"0\"", drive % "0")
+                        text = text.replace("}}\nforces:", "}\n%s\nforces:" % (gears % ratio)).replace("joints: {s:", "joints:\n  s:")
+                        text = text.replace("}, l: {", "}\n  l: {").replace("inertia: 0.04}", "inertia: 0.04}" + bodies)
+                        text = text.replace("[ground/l, large]", ends or "[ground/l, large]")
+                        out, _ = self.freeplay("validate", self.model(text, "freeplay: 1\n"), "--json")
+                        said = [m for m in json.loads(out)["messages"] if "'belt' turns" in m["message"]]
+                        self.assertEqual(bool(found), bool(said), said)
+                        if said:
+                            self.assertEqual("doubtful-value", said[0]["id"])
+                            self.assertIn("which stretches the belt by %.3g m in each turn" % found, said[0]["message"])
+
+    def test_one_that_turns_a_hand_on_an_arm_is_against_no_gear(self):
+        out, _ = self.freeplay("validate", self.model("""
+bodies: {arm: {mass: 1, inertia: 0.01, com: [0.25, 0], frames: {tip: [0.5, 0]}}, hand: {mass: 1, inertia: 0.01}, shaft: {mass: 1, inertia: 0.01}}
+joints:
+  a: {type: revolute, between: [ground, arm]}
+  s: {type: revolute, between: [ground, shaft]}
+  h: {type: revolute, between: [arm/tip, hand]}
+  g: {type: gear, of: [a, s], ratio: 3}
+forces: {belt: {type: belt, between: [shaft, hand], first_radius: 50 mm, second_radius: 50 mm, stiffness: 2e5, pretension: 100}}
+drivers: {m: {joint: a, kind: angle, value: 1 rad*sin(t)}}
+simulation: {end: 1, step: 1 ms}
+"""), "--json")
+        self.assertEqual([], json.loads(out)["messages"])
+
     def test_the_ratio_is_that_of_the_radii(self):
         for strands, ratio in (("open", 5 / 12), ("crossed", -5 / 12)):
             columns = self.run_model(self.TEXT % (400, strands, "0 N*m", "10 rad*smooth(t, 0 s, 0.5 s)", 1,
