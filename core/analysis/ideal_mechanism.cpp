@@ -37,7 +37,7 @@ std::vector<char> drivers_that_stay(const Model& model, const Platform& platform
 }
 
 /// Joints and laws stay owned by the original.
-std::unique_ptr<Model> without_inputs(const Model& model, const Platform& platform) {
+[[gnu::cold]] std::unique_ptr<Model> without_inputs(const Model& model, const Platform& platform) {
   auto out = std::make_unique<Model>();
   out->file = model.file;
   out->name = model.name;

@@ -33,7 +33,7 @@ struct PlatformOverrides {
 
 /// Throws Error{input}: "missing-key" (no frame is known), "wrong-type" (a joint that cannot be driven, a frame on
 /// ground), "driver-on-clearance", "wrong-length" (modes); Error{usage} "bad-value" for modes of the command line.
-Platform platform_of(const Model& model, const PlatformOverrides& overrides = {});
+[[gnu::cold]] Platform platform_of(const Model& model, const PlatformOverrides& overrides = {});
 
 /// Index into Model::markers of BODY or BODY/FRAME; the marker is made when it is new. Throws Error{usage}
 /// "unknown-name" with the nearest name.

@@ -23,7 +23,7 @@ void require_sense(const AnalysisWords& words);
 /// What the words put in place of the section. May add a marker. Throws Error{usage} "unknown-name", "bad-value".
 PlatformOverrides platform_overrides(Model& model, const AnalysisWords& words);
 /// Throws Error{usage} "bad-value", "unknown-name".
-AnalysisRequest request_of(const IdealMechanism& mechanism, const AnalysisWords& words, int threads);
+[[gnu::cold]] AnalysisRequest request_of(const IdealMechanism& mechanism, const AnalysisWords& words, int threads);
 /// The options that ask for the same.
 std::vector<std::string> arguments_of(const AnalysisWords& asked, bool coloured);
 /// The seed of samples that the words ask for.
