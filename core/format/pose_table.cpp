@@ -9,6 +9,7 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "format/doubtful_points.h"
 #include "format/table_file.h"
 #include "format/table_keys.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 constexpr double length_limit = 1e-3;                 // of a quaternion from 1
 constexpr double widest_turn = 170.0 / 180.0 * M_PI;  // between neighbours [rad]
+constexpr double smallest_way = 1e-9;                 // of a path [m or rad]: else rounding
 constexpr double closed_limit = 1e-9;                 // of the largest number, between both ends of a period
 
 std::vector<std::string> column_words(bool in_space) {
@@ -128,6 +130,9 @@ class PoseReader {
       }
       path.tables[i] = std::make_shared<const TimeTable>(times, std::move(column), path.source.interpolation,
                                                          path.source.ends, path.source.outside);
+      const auto [low, high] = std::ranges::minmax(path.tables[i]->values());
+      if (i < 3 && high - low > smallest_way)
+        doubt_overshoot(*path.tables[i], value_, {"t", " s", fmt::format(" in '{}'", words_[i])});
       Jet jet;
       EvaluationFailure failure;
       const double start = value_.reading().start_time;

@@ -28,6 +28,8 @@ constexpr double suddenly = 10.0;           // speed, by the mean one of the run
 constexpr double most_acceleration = 3e4;   // of all masses together, by one load [m/s^2]
 constexpr double most_of_element = 3e5;     // the same by a spring or damper, which may follow from what went wrong
 constexpr double most_of_clearance = 0.2;   // way of one surface in another in a step, by the clearance
+constexpr double shortly_before = 0.01;     // of the run
+constexpr double least_jump = 1.0;          // of the speed that a driver gives [m/s]: metals yield in such blows
 
 /// The candidate that is farthest beyond its limit.
 class Suspects {
@@ -146,11 +148,15 @@ Pace pace_of(const System& system, std::size_t driver, const Wreck& wreck) {
   return pace;
 }
 
+/// Of a link that a driver turns: one that is too long says nothing of speeds.
+double arm_of(const System& system) {
+  const std::vector<double> sizes = sizes_of(system.model());
+  return sizes.empty() ? system.size() : sizes[(sizes.size() - 1) / 2];
+}
+
 void suspect_motion(const System& system, const Wreck& wreck, Suspects& suspects) {
   const Model& model = system.model();
-  // Of a link that a driver turns: one that is too long says nothing of speeds.
-  const std::vector<double> sizes = sizes_of(model);
-  const double arm = sizes.empty() ? system.size() : sizes[(sizes.size() - 1) / 2];
+  const double arm = arm_of(system);
   for (std::size_t d = 0; d < model.drivers.size(); ++d) {
     const Driver& driver = model.drivers[d];
     if (!prescribes(driver.kind)) continue;
@@ -214,6 +220,33 @@ void suspect_loads(const System& system, const Evaluation& e, const Wreck& wreck
   }
 }
 
+/// A speed of a driver that jumped shortly before, as at a point of a straight table or path.
+void suspect_jump(const System& system, const Wreck& wreck, Suspects& suspects) {
+  const Model& model = system.model();
+  const double span = model.settings.end - model.settings.start, beside = 1e-9 * span;
+  std::vector<TimeValue> before(model.drivers.size()), after(before);
+  MotionFault fault;
+  DriveKinks kinks(model);
+  for (double kink = wreck.t - shortly_before * span; (kink = kinks.next(kink, wreck.t)) <= wreck.t;) {
+    if (!system.motions().evaluate(kink - beside, {before.data(), before.size()}, fault) ||
+        !system.motions().evaluate(kink + beside, {after.data(), after.size()}, fault)) {
+      continue;
+    }
+    for (std::size_t d = 0; d < model.drivers.size(); ++d) {
+      const Driver& driver = model.drivers[d];
+      if (!prescribes(driver.kind)) continue;
+      const bool turns = system.joints().layout(driver.joint).coordinate == Coordinate::angle;
+      suspects.add(std::abs(after[d].rate - before[d].rate) * (turns ? arm_of(system) : 1.0) / least_jump, [&] {
+        return fmt::format("driver '{}'{} jumps at t = {:.6g} s: its speed from {:.4g} to {:.4g} {}", driver.name,
+                           driver.kinematics < 0
+                               ? std::string()
+                               : fmt::format(" on the path of '{}'", model.kinematics[at(driver.kinematics)].name),
+                           kink, before[d].rate, after[d].rate, turns ? "rad/s" : "m/s");
+      });
+    }
+  }
+}
+
 // Rubber does bear a load, but not that of a machine of metal.
 void suspect_soft_joint(const System& system, const Wreck& wreck, Suspects& suspects) {
   if (wreck.joint < 0) return;
@@ -269,6 +302,7 @@ std::string likely_cause(const System& system, const Evaluation& e, const Wreck&
   suspect_loads(system, e, wreck, suspects);
   if (suspects.sentence().empty() && !wreck.worker.empty()) return wreck.worker;
   // Where the model is sound, or seems to be.
+  if (suspects.sentence().empty()) suspect_jump(system, wreck, suspects);
   if (suspects.sentence().empty()) suspect_step(system, e, wreck, suspects);
   if (suspects.sentence().empty()) suspect_soft_joint(system, wreck, suspects);
   return suspects.sentence();

@@ -21,9 +21,10 @@ struct Wreck {
 };
 
 /// Of inertias, masses, lengths, moduli and stiffnesses of contacts, gravity, motions and efforts of drivers, loads,
-/// springs and dampers that one which is farthest outside of what machines have, else `worker`, else the step, as a
-/// sentence without full stop: "inertia of 'coupler' is 250 kg m^2 for a mass of 0.21 kg: its radius of gyration would
-/// be 34 m". Empty when all are inside. `e` is evaluated where the run stands.
+/// springs and dampers that one which is farthest outside of what machines have, else `worker`, else a jump of a
+/// driver's speed shortly before, else the step, as a sentence without full stop: "inertia of 'coupler' is 250 kg m^2
+/// for a mass of 0.21 kg: its radius of gyration would be 34 m". Empty when all are inside. `e` is evaluated where the
+/// run stands.
 [[gnu::cold]] std::string likely_cause(const System& system, const Evaluation& e, const Wreck& wreck);
 
 }  // namespace freeplay

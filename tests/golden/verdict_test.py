@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 import unittest
 
 from program import ROOT, ProgramTest
@@ -111,6 +112,25 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
             _, err = self.freeplay("run", "model.yaml", "--force", "--out", "r", code=4)
             self.assertIn("; likely cause: K of joint 'wrist' is 2.1e+06 N/m^1.5: as of rubber; is it meant in N/mm^1.5", err)
             self.assertEqual("material" in text, "its material makes 1.1e+11 Pa; check the number and its unit, as in '2.1e+06 N/mm^1.5'" in err)
+
+    def test_a_path_whose_points_leap_is_named_as_the_cause(self):
+        """From 0.3 s on it goes by 72 mm in 1 ms."""
+        with open(os.path.join(ROOT, "mechanisms", "3-rrr.yaml"), encoding="utf-8") as file:
+            circle = file.read()
+        head, _, tail = circle.partition("path: {x")
+        text = head + "path: %s" + tail[tail.index("\n"):]
+        self.write("poses.csv", "time,x,y,angle\n" + "".join(
+            "%r,%r,%r,0\n" % row for row in ((0, 0.05, 0), (0.1, 0.04, 0.01), (0.2, 0.03, 0.02), (0.3, 0.02, 0.03), (0.301, 0.06, -0.03), (0.6, 0.03, -0.03))))
+        self.write("model.yaml", text % "{file: poses.csv, interpolation: linear}")
+        _, err = self.freeplay("run", "model.yaml", "--force", "--out", "r", "--accuracy", "1um", code=4)
+        cause = re.search(r"; likely cause: driver '(leg\d.A)' on the path of 'circle' jumps at t = 0.3 s: its speed from (\S+) to (\S+) rad/s", err)
+        self.assertIsNotNone(cause, err)
+        self.assertIn("driver '%s' at t = 0.3 s: the speed that it prescribes jumps from %s to %s rad/s" % cause.groups(), err)
+        self.write("model.yaml", text % "poses.csv")
+        found = [m for m in json.loads(self.freeplay("validate", "model.yaml", "--json")[0])["messages"] if "cubic" in m["message"]]
+        self.assertEqual([("doubtful-value", 57, 13)] * 2, [(m["id"], m["line"], m["column"]) for m in found])
+        self.assertRegex(found[0]["message"], r"'drivers.circle.inverse_kinematics.path' comes to \S+ in 'x' at t = \S+ s, but its points lie "
+                                              "between 0.02 and 0.06: write 'interpolation: linear', or give more points")
 
     def test_a_hill_that_a_step_goes_over_is_shown_by_rows(self):
         # A bead with 0.1 m/s rises by 0.51 mm.
