@@ -111,9 +111,10 @@ int tell(const Comparison& comparison, const Words& words, const CompareOptions&
   } else {
     print(table_text(comparison, common.verbose || !options.channels.empty(), words));
   }
-  for (const std::vector<std::string>* texts : {&comparison.missing, &comparison.aside}) {
-    for (const std::string& text : *texts) print_messages("freeplay: note: " + text + "\n", common.no_color);
-  }
+  // The table has said what is missing.
+  std::vector<std::string> notes = common.json ? comparison.missing : std::vector<std::string>();
+  notes.insert(notes.end(), comparison.aside.begin(), comparison.aside.end());
+  for (const std::string& text : notes) print_messages("freeplay: note: " + text + "\n", common.no_color);
   return comparison.agree() ? 0 : 7;
 }
 
