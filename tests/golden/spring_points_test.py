@@ -100,13 +100,9 @@ simulation: {end: 0.5, %s, output: {interval: 2 ms}}
         self.refusal((self.TEXT % ("linear", "step: 1 ms")).replace("interpolation: linear", "ends: periodic"),
                      id="bad-table", line=10)
 
-
-if __name__ == "__main__":
-    unittest.main()
-
     # Three of them a bump stop, a damper whose force bends at a speed and a rubber stop to both sides, with the piece that
     # swings out; then such as springs have.
-    SWING = (([(-10, 0), (0, 0), (5, 0), (8, 0), (10, 3000)], 3), ([(-10, -1000), (-1, -800), (0, 0), (1, 800), (10, 1000)], 0),
+    SWING = (([(-10, 0), (0, 0), (5, 0), (8, 0), (10, 3000)], 2), ([(-10, -1000), (-1, -800), (0, 0), (1, 800), (10, 1000)], 0),
              ([(-10, -900), (-5, 0), (5, 0), (10, 900)], 1))
     SMOOTH = ([(x, 3 * x ** 3) for x in range(-6, 7, 2)], [(x, 500 * math.tanh(x / 4)) for x in range(-12, 13, 4)],
               [(x, x * x) for x in range(-6, 7, 2)], [(x, 300 * math.sin(x)) for x in range(-9, 10)], [(-10, -900), (0, 0), (10, 600)],
@@ -122,7 +118,7 @@ if __name__ == "__main__":
             (a, fa), (b, fb) = points[piece:piece + 2]
             outside = lambda v: max(v - max(fa, fb), min(fa, fb) - v)
             place = max((a + (b - a) * k / 8 for k in range(1, 8)), key=lambda x: outside(through_points(x, True, points)))
-            self.assertEqual(10, message["line"])
+            self.assertEqual(9, message["line"])
             self.assertIn("'forces.tie.spring.points' comes to %.4g N at x = %.4g m, but the two points beside it are %.4g and %.4g: write "
                           "'interpolation: linear', or give more points" % (through_points(place, True, points), place / 1e3, min(fa, fb),
                                                                            max(fa, fb)), message["message"])
@@ -136,3 +132,7 @@ if __name__ == "__main__":
             "[[-20 mm, -900 N], [-5 mm, -60 N], [0, 0], [10 mm, 200 N], [30 mm, 1.5 kN]], interpolation: linear", text + keys))
         found = json.loads(self.freeplay("validate", "m.yaml", "--json")[0])["messages"]
         return [message for message in found if message["id"] == "doubtful-value" and "cubic" in message["message"]]
+
+
+if __name__ == "__main__":
+    unittest.main()
