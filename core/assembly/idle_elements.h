@@ -9,8 +9,9 @@ namespace freeplay {
 /// Adds `idle-force` for an element along or about an axis, along or about which an ideal joint between the same two
 /// bodies lets them not move, or whose two ends it holds at one place; and `doubtful-value` for a damping that stops
 /// what it works on, through joints and drivers, faster than sound crosses it, and for a stop that starts
-/// beyond an end by a tenth of its way; `doubtful-angle` for a torsion spring that starts wound by a whole turn, more or
-/// less by an eighth of it, and `doubtful-value` for a belt on pulleys that joints let turn by another ratio. `system` stands at the start, `at_start` has its positions and coordinates.
+/// beyond an end by a tenth of its way; `doubtful-angle` for a torsion spring that starts wound by a whole turn, more
+/// or less by an eighth of it, and `doubtful-value` for a belt on pulleys that joints let turn by another ratio.
+/// `system` stands at the start, `at_start` has its positions and coordinates.
 void doubt_elements(const System& system, const Evaluation& at_start, Structure& structure);
 
 }  // namespace freeplay
