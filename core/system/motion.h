@@ -15,11 +15,12 @@ namespace freeplay {
 
 /// Why a driver, a path or an applied force has no value at some time.
 struct MotionFault {
+  MotionFault() { text[0] = '\0'; }
   int driver = -1;      ///< index into Model::drivers, or -1
   int kinematics = -1;  ///< index into Model::kinematics, or -1
   int force = -1;       ///< index into Model::forces, or -1
   const char* id = "";  ///< "ik-unreachable", "bad-expression", "bad-number"
-  char text[256] = "";
+  char text[256];
 };
 
 /// Drivers that follow a path through the whole mechanism instead of a leg of their own.
