@@ -128,24 +128,31 @@ bool Motions::function(std::size_t d, double t, TimeValue& out, EvaluationFailur
   return true;
 }
 
-bool Motions::evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept {
-  std::optional<PathPose> frame;
+bool Motions::follow_paths(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept {
+  PathPose frame;
   PlatformTurn platform;
   int framed = -1;  // the entry that both are of
   for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
-    if (const int kinematics = model_.drivers[d].kinematics; kinematics >= 0) {
-      out[d] = {};
-      if (!legs_[d]) continue;
-      if (framed != kinematics) {
-        if (!path(kinematics, t, frame.emplace(), work, fault)) return false;
-        platform = platform_angle(static_cast<int>(d), *frame);
-      }
-      framed = kinematics;
-      const CrankPose pose = solve_crank(*legs_[d], (*frame)[0], (*frame)[1], platform);
-      if (!reaches(static_cast<int>(d), t, pose, fault)) return false;
-      out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
-      continue;
+    const int kinematics = model_.drivers[d].kinematics;
+    if (kinematics < 0) continue;
+    out[d] = {};
+    if (!legs_[d]) continue;
+    if (framed != kinematics) {
+      if (!path(kinematics, t, frame, work, fault)) return false;
+      platform = platform_angle(static_cast<int>(d), frame);
     }
+    framed = kinematics;
+    const CrankPose pose = solve_crank(*legs_[d], frame[0], frame[1], platform);
+    if (!reaches(static_cast<int>(d), t, pose, fault)) return false;
+    out[d] = {pose.crank.value + legs_[d]->coordinate_offset, pose.crank.rate, pose.crank.acceleration};
+  }
+  return true;
+}
+
+bool Motions::evaluate(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept {
+  if (!model_.kinematics.empty() && !follow_paths(t, out, work, fault)) return false;
+  for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
+    if (model_.drivers[d].kinematics >= 0) continue;
     EvaluationFailure failure;
     if (function(d, t, out[d], failure)) continue;
     fault.driver = static_cast<int>(d);

@@ -79,6 +79,8 @@ class Motions {
   Jet platform_angle(int driver, const PathPose& frame) const;
   FollowedMotion::Work& own_part(MotionWork& work) const;
   bool reaches(int driver, double t, const CrankPose& pose, MotionFault& fault) const noexcept;
+  /// Of drivers by inverse kinematics.
+  bool follow_paths(double t, Span<TimeValue> out, MotionWork& work, MotionFault& fault) const noexcept;
   bool function(std::size_t driver, double t, TimeValue& out, EvaluationFailure& failure) const noexcept;
 
   const Model& model_;
