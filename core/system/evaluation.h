@@ -72,6 +72,11 @@ class KeptEvaluation {
   std::unique_ptr<Evaluation> evaluation_;
 };
 
+inline bool Joints::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
+  declared_.fill(point, markers_.mounts(), terms, e, e);
+  return asked_.empty() || ask_for_coordinates(point, terms, e);
+}
+
 inline JointInput Joints::input(const JointRecord& record, const Point& point, const Evaluation& e) {
   return {point.t,
           &e.markers[at(record.marker_a)],

@@ -141,8 +141,7 @@ void Joints::shift_all(Evaluation& e) const {
   }
 }
 
-bool Joints::evaluate_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
-  declared_.fill(point, markers_.mounts(), terms, e, e);
+bool Joints::ask_for_coordinates(const Point& point, unsigned terms, Evaluation& e) const {
   for (const int j : asked_) {
     const JointRecord& record = records_[at(j)];
     if ((record.coordinate_terms & terms) == 0) continue;

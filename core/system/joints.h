@@ -81,6 +81,8 @@ class Joints {
 
  private:
   void shift_all(Evaluation& e) const;
+  /// Of joints that do not declare their coordinates.
+  bool ask_for_coordinates(const Point& point, unsigned terms, Evaluation& e) const;
 
   const Model& model_;
   Variant variant_;
