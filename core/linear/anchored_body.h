@@ -64,12 +64,13 @@ struct AnchoredBody {
     }
   }
 
-  /// From x = b and l = c to the multipliers l and x = b - G^T l, not yet divided by the masses; b holds the forces of
-  /// all other rows.
+  /// From x = b and l = c to the multipliers l and x = W (b - G^T l); b holds the forces of all other rows.
   template <int count>
-  void substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) const {
-    double* const b = &x[width * static_cast<std::size_t>(body)];
-    double multiplier[count];
+  void substitute(std::span<const double> numbers, std::span<const double> inverse_mass, std::span<double> x,
+                  std::span<double> l) const {
+    const std::size_t first = width * static_cast<std::size_t>(body);
+    double b[width], multiplier[count];
+    for (std::size_t c = 0; c < width; ++c) b[c] = x[first + c];
     for (int r = 0; r < count; ++r) {
       double sum = -l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])];
       for (int c = 0; c < width; ++c) sum += weighted_[r][c] * b[c];
@@ -82,6 +83,7 @@ struct AnchoredBody {
       for (int c = 0; c < width; ++c) b[c] -= g[c] * multiplier[r];
       l[static_cast<std::size_t>(row[static_cast<std::size_t>(r)])] = multiplier[r];
     }
+    for (std::size_t c = 0; c < width; ++c) x[first + c] = b[c] * inverse_mass[first + c];
   }
 
  private:

@@ -75,6 +75,10 @@ std::vector<int> NormalMatrix::find_anchored(int rows, std::span<const Piece> pi
     own.piece[at(own.rows++)] = static_cast<int>(p);
     taken[at(row)] = 1;
   }
+  not_anchored_.clear();
+  for (std::size_t b = 0; b < index.size(); ++b) {
+    if (index[b] < 0) not_anchored_.push_back(width * b);
+  }
   std::vector<int> left;
   for (int r = 0; r < rows; ++r) {
     if (!taken[at(r)]) left.push_back(r);
@@ -216,9 +220,11 @@ template <int width>
 void NormalMatrix::substitute(std::span<const double> numbers, std::span<double> x, std::span<double> l) {
   if (!rows_.empty()) solve_others<width>(numbers, x, l);
   for (const AnchoredBody<width>& own : anchored<width>(*this)) {
-    by_rows<width>(own.rows, [&]<int count>() { own.template substitute<count>(numbers, x, l); });
+    by_rows<width>(own.rows, [&]<int count>() { own.template substitute<count>(numbers, inverse_mass_, x, l); });
   }
-  for (std::size_t i = 0; i < inverse_mass_.size(); ++i) x[i] *= inverse_mass_[i];
+  for (const std::size_t first : not_anchored_) {
+    for (std::size_t c = first; c < first + width; ++c) x[c] *= inverse_mass_[c];
+  }
 }
 
 // The multipliers of the rows in S, and from x = b to b - G^T l with these alone.

@@ -64,7 +64,8 @@ class NormalMatrix {
   int width_ = 3;
   std::vector<AnchoredBody<3>> anchored_in_plane_;
   std::vector<AnchoredBody<6>> anchored_in_space_;
-  std::vector<int> rows_;  // all others, by their place in S
+  std::vector<int> rows_;                  // all others, by their place in S
+  std::vector<std::size_t> not_anchored_;  // bodies: where their numbers begin
   std::vector<double> inverse_mass_;
   struct Other {
     int row;              // its place in S
