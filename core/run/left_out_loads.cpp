@@ -9,11 +9,16 @@
 namespace freeplay {
 namespace {
 
-/// Of the first numbers of a wrench or of velocities: two in the plane, which has no third. As PeakValues has it.
+/// Numbers of a force or of a velocity: the plane has no third.
+template <class Bodies>
+constexpr int directions = Bodies::velocities == 3 ? 2 : 3;
+
+/// Of the first numbers of a wrench or of velocities. As PeakValues has it.
 template <class Bodies>
 double amount(const double* x) {
-  const double z = Bodies::velocities == 3 ? 0.0 : x[2];
-  return std::sqrt(x[0] * x[0] + x[1] * x[1] + z * z);
+  double sum = x[0] * x[0];
+  for (int c = 1; c < directions<Bodies>; ++c) sum += x[c] * x[c];
+  return std::sqrt(sum);
 }
 
 }  // namespace
@@ -57,11 +62,11 @@ inline double LeftOutLoads::force(int joint, const Evaluation& e, std::span<cons
   if (rows.offset >= 0) {
     const double *entries = &e.jacobian[at(rows.offset)], *multiplier = &lambda[at(rows.first)];
     for (int r = 0; r < rows.count; ++r, entries += Bodies::velocities) {
-      for (int c = 0; c < 3; ++c) sum[c] -= entries[c] * multiplier[r];
+      for (int c = 0; c < directions<Bodies>; ++c) sum[c] -= entries[c] * multiplier[r];
     }
   }
   const double* applied = &e.wrench[12 * at(joint) + 6];
-  for (int c = 0; c < 3; ++c) sum[c] = (rows.second ? sum[c] : -sum[c]) + applied[c];
+  for (int c = 0; c < directions<Bodies>; ++c) sum[c] = (rows.second ? sum[c] : -sum[c]) + applied[c];
   return amount<Bodies>(sum);
 }
 
