@@ -34,7 +34,9 @@ struct NamedLaw {
   static const NamedLaw& of(const void* self) { return *static_cast<const NamedLaw*>(self); }
   /// The status of a call; puts the name before what one that failed has said.
   Status named(Status status, Message* message) const noexcept {
-    if (status == Status::ok) return status;
+    return status == Status::ok ? status : add_name(status, message);
+  }
+  [[gnu::cold, gnu::noinline]] Status add_name(Status status, Message* message) const noexcept {
     Message text = *message;
     const std::size_t length = std::min(name.size(), sizeof text.text / 2);
     std::memcpy(text.text, name.data(), length);
@@ -45,7 +47,10 @@ struct NamedLaw {
   }
   /// The same of one for a force, which must be a finite number.
   Status named(Status status, bool finite, Message* message) const noexcept {
-    if (status != Status::ok || finite) return named(status, message);
+    return finite ? named(status, message) : refuse(status, message);
+  }
+  [[gnu::cold, gnu::noinline]] Status refuse(Status status, Message* message) const noexcept {
+    if (status != Status::ok) return named(status, message);
     abi::copy_text(message->text, sizeof message->text, "it returned a force that is not a finite number");
     return named(Status::failed, message);
   }
