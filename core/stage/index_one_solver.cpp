@@ -197,21 +197,23 @@ bool IndexOneSolver::equations_hold(std::span<const double> x_a, std::span<const
 template <int width>
 bool IndexOneSolver::rows_hold_in(std::span<const double> right, std::span<const double> x_a, double tolerance,
                                   std::span<double> left) {
-  const auto each_number = [&](std::size_t r, auto&& use) {
-    for (const ConstraintJacobian::RowPiece& piece : system_.jacobian().row_pieces(r)) {
-      const double *entry = &e_->jacobian[at(piece.offset)], *rate = &x_a[at(piece.velocity)];
-      for (int c = 0; c < width; ++c) use(entry[c] * rate[c]);
+  const double *const entries = e_->jacobian.data(), *const rates = x_a.data();
+  std::ranges::copy(right, left.begin());
+  for (const JacobianBlock& block : system_.jacobian().blocks()) {
+    const double *entry = entries + block.offset, *const rate = rates + width * block.body;
+    for (int r = 0; r < block.rows; ++r, entry += width) {
+      double gap = left[at(block.row + r)];
+      for (int c = 0; c < width; ++c) gap -= entry[c] * rate[c];
+      left[at(block.row + r)] = gap;
     }
-  };
-  for (std::size_t r = 0; r < right.size(); ++r) {
-    double gap = right[r];
-    each_number(r, [&](double moved) { gap -= moved; });
-    left[r] = gap;
   }
   for (std::size_t r = 0; r < right.size(); ++r) {
     if (dependent_[r] != 0) continue;
     double size = std::abs(right[r]);
-    each_number(r, [&](double moved) { size += std::abs(moved); });
+    for (const ConstraintJacobian::RowPiece& piece : system_.jacobian().row_pieces(r)) {
+      const double *entry = entries + piece.offset, *const rate = rates + piece.velocity;
+      for (int c = 0; c < width; ++c) size += std::abs(entry[c] * rate[c]);
+    }
     if (!(std::abs(left[r]) <= tolerance * rounding * size)) return false;
   }
   return true;
@@ -276,14 +278,16 @@ bool IndexOneSolver::accelerate(StateView& state, Span<double> z_rate) {
 
 /// update_ <- the motion of least mass norm that changes the rows by `gap`, by the index-1 factors that there are.
 [[gnu::always_inline]] inline void IndexOneSolver::solve_rows(std::span<const double> gap) {
-  const std::size_t nv = increment_.size();
+  const std::size_t nv = update_.size() - gap.size();
   std::fill_n(update_.begin(), nv, 0.0);
-  for (std::size_t r = 0; r < gap.size(); ++r) update_[nv + r] = dependent_[r] ? 0.0 : gap[r];
-  solve_linear(std::span(update_).first(nv), std::span(update_).subspan(nv));
+  double* const pressure = update_.data() + nv;
+  for (std::size_t r = 0; r < gap.size(); ++r) pressure[r] = dependent_[r] ? 0.0 : gap[r];
+  solve_linear(std::span(update_).first(nv), {pressure, gap.size()});
 }
 
 bool IndexOneSolver::project_velocity(StateView& state) {
-  if (state.lambda.size == 0) return true;
+  const std::size_t nv = state.v.size, nc = state.lambda.size;
+  if (nc == 0) return true;
   if (!e_->has_rows_at(equations_.point_of(state))) {
     if (!equations_.evaluate(state, rows)) return false;
   } else {
@@ -296,10 +300,11 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   bool solved = false;  // update_ is the first one of a refinement
   for (int pass = 0; pass < quick_passes; ++pass) {
     solve_rows(right_c_);
-    solved = !(equations_.norm(std::span(update_).first(increment_.size())) <= small_change * speed);
+    const double *const motion = update_.data(), *const pressure = motion + nv;
+    solved = !(equations_.norm({motion, nv}) <= small_change * speed);
     if (solved) break;
-    for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += update_[i];
-    for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += update_[increment_.size() + r];
+    for (std::size_t i = 0; i < nv; ++i) state.v[i] += motion[i];
+    for (std::size_t r = 0; r < nc; ++r) multipliers_[r] += pressure[r];
     // Factors of a regular matrix leave so little of a small change that it is less than v rounds to.
     if (matrix_.is_well_conditioned() || velocities_hold(state.v)) return true;
   }
@@ -309,8 +314,8 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   std::ranges::fill(multipliers_, 0.0);
   // The change is a small part of v: digits below the rounding of v are not needed.
   if (!refine(increment_, multipliers_, speed, false, solved)) return false;
-  for (std::size_t i = 0; i < increment_.size(); ++i) state.v[i] += increment_[i];
-  for (std::size_t r = 0; r < multipliers_.size(); ++r) multipliers_[r] += first_multipliers_[r];
+  for (std::size_t i = 0; i < nv; ++i) state.v[i] += increment_[i];
+  for (std::size_t r = 0; r < nc; ++r) multipliers_[r] += first_multipliers_[r];
   return true;
 }
 
