@@ -98,9 +98,11 @@ bool System::evaluate(const Point& point, unsigned terms, Evaluation& e) const {
   const Profile::Timer timer(e.profile(), Phase::assembly);
   // At the end of a step velocities are projected where everything else stays.
   const bool all_placed = driven_.empty() || e.driven_time == point.t;
-  // nu depends on time and coordinates alone; rows that are made one by one are made anew.
-  const unsigned placed = term_position | (constraints_.all_declared() ? term_velocity : 0u);
-  const unsigned kept = all_placed && e.has_rows_at(point) ? e.filled & placed : 0u;
+  unsigned kept = 0;
+  if (all_placed && e.has_rows_at(point)) {
+    // nu depends on time and coordinates alone; rows that are made one by one are made anew.
+    kept = e.filled & (term_position | (constraints_.all_declared() ? term_velocity : 0u));
+  }
   e.filled = 0;
   if (!fill(point, terms, kept, e)) return false;
   e.filled = terms;
