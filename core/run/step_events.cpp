@@ -95,10 +95,7 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
   values_.clear();
   switched_ = false;
   for (std::size_t w = 0; w < watched_.size(); ++w) {
-    const Span<const Event> events = events_of(watched_[w]);
-    for (std::size_t i = 0; located_ && i < events.size; ++i) {
-      if (events[i].locate != 0) armed_[first_event_[w] + i] = seen_[first_event_[w] + i];
-    }
+    if (located_) arm_located(w);
     if (inside_[at(watched_[w])] == 0 || context_.is_asleep(watched_[w])) continue;
     // A joint's present history decides what can happen next.
     const Step step{before,       e_before, after, e_after, {before.t(), before.q(), before.v(), before.z(), after.h()},
@@ -112,6 +109,13 @@ bool StepEvents::apply(const State& before, const Evaluation& e_before, State& a
     }
   }
   return true;
+}
+
+void StepEvents::arm_located(std::size_t watched) {
+  const Span<const Event> events = events_of(watched_[watched]);
+  for (std::size_t i = 0; i < events.size; ++i) {
+    if (events[i].locate != 0) armed_[first_event_[watched] + i] = seen_[first_event_[watched] + i];
+  }
 }
 
 bool StepEvents::apply_joint(std::size_t watched, const Step& step, Fault& fault) {

@@ -118,6 +118,7 @@ class StepEvents {
     Mobility mobility;
     void* self;
   };
+  void arm_located(std::size_t watched);
   bool apply_joint(std::size_t watched, const Step& step, Fault& fault);
   /// Where a joint, or the switches, are asked.
   struct Place {
