@@ -1,5 +1,6 @@
 #include "results/checkpoints.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -14,6 +15,8 @@ namespace freeplay {
 namespace {
 
 constexpr const char* hashes_of_checkpoint = "kept";
+constexpr int most_steps_to_look = 16;
+constexpr double short_time = 0.01;  // between two looks at the clock, in periods
 
 }  // namespace
 
@@ -39,6 +42,15 @@ void Checkpoints::go_on(const Checkpoint& from) {
   made_["resumed_from"] = from.state ? Json(from.state->time) : Json(nullptr);
   resumed_words_ = fmt::format("resumed from t = {:g} s, row {}", from.state ? from.state->time : 0.0, from.rows());
   if (!from.files.reals.empty() || !from.files.integers.empty()) recording_.restore(from.files);
+}
+
+bool Checkpoints::look() {
+  const auto now = std::chrono::steady_clock::now();
+  const bool is_soon = now - looked_ < short_time * period_;
+  steps_to_look_ = is_soon ? std::min(2 * steps_to_look_, most_steps_to_look) : 1;
+  steps_ = 0;
+  looked_ = now;
+  return now - last_ >= period_;
 }
 
 void Checkpoints::end(std::int64_t rows) {

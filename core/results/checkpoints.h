@@ -30,7 +30,9 @@ class Checkpoints {
   void begin();
   /// Those of a run that goes on from one, instead of begin().
   void go_on(const Checkpoint& from);
-  bool due() const { return period_.count() > 0.0 && std::chrono::steady_clock::now() - last_ >= period_; }
+  /// Asked after every step. The clock, whose reading takes a part of a short step, is not read in each of those that
+  /// are far shorter than the period.
+  bool due() { return period_.count() > 0.0 && ++steps_ >= steps_to_look_ && look(); }
   /// How often the run was resumed, and the time of the checkpoint that it went on from last; null without.
   int resumed() const { return made_.value("resumed", 0); }
   Json resumed_from() const { return made_.value("resumed_from", Json()); }
@@ -42,12 +44,15 @@ class Checkpoints {
   void add(RunState state);
 
  private:
+  bool look();
+
   Recording& recording_;
   std::filesystem::path file_;
   Json made_;
   std::string resumed_words_;
   std::chrono::duration<double> period_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now(), looked_ = last_;
+  int steps_ = 0, steps_to_look_ = 1;  // since the last look at the clock, and until the next
 };
 
 }  // namespace freeplay
