@@ -178,15 +178,16 @@ inline void copy_text(char* to, std::size_t capacity, const char* from) noexcept
   to[i] = '\0';
 }
 
+[[noreturn, gnu::cold, gnu::noinline]] inline void throw_failure(Status status, const Message& message) {
+  if (status != Status::bad_parameter) throw std::runtime_error(message.text);
+  // The message dies with this frame, so its words move to storage that lives as long as the exception is handled.
+  static thread_local Message kept;
+  kept = message;
+  throw BadParameter(kept.path, kept.id, kept.text);
+}
 /// Turns a failed call back into an exception on the author's side of the boundary.
 inline void require(Status status, const Message& message) {
-  if (status == Status::bad_parameter) {
-    // The message dies with this frame, so its words move to storage that lives as long as the exception is handled.
-    static thread_local Message kept;
-    kept = message;
-    throw BadParameter(kept.path, kept.id, kept.text);
-  }
-  if (status != Status::ok) throw std::runtime_error(message.text);
+  if (status != Status::ok) throw_failure(status, message);
 }
 
 /// Runs `body` and turns whatever it throws into a Status and a Message.
