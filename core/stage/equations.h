@@ -42,9 +42,10 @@ class StageEquations {
     // Bits of numbers without a sign are in the order of the numbers; what is not finite comes after all others.
     constexpr std::uint64_t without_sign = ~std::uint64_t{0} >> 1;
     std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < per_unit_.size(); ++i) {
+    const auto add = [&](std::size_t i) {
       bits = std::max(bits, std::bit_cast<std::uint64_t>(increment[i] * per_unit_[i]) & without_sign);
-    }
+    };
+    for (std::size_t i = 0; i < per_unit_.size(); i += 3) add(i), add(i + 1), add(i + 2);  // bodies have 3 or 6
     const double largest = std::bit_cast<double>(bits);
     return largest + (largest - largest);
   }

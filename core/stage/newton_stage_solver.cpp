@@ -69,10 +69,11 @@ StageFactor& NewtonStageSolver::begin_stage(const Stage& stage, StateView& out, 
 }
 
 void NewtonStageSolver::follow_accelerations(const Stage& stage, StateView& out) {
-  for (std::size_t i = 0; i < increment_.size(); ++i) {
+  const auto follow = [&](std::size_t i) {
     out.v[i] = stage.v_known[i] + stage.beta_v * out.a[i];
     increment_[i] = stage.increment_known[i] + stage.beta_q * out.a[i];
-  }
+  };
+  for (std::size_t i = 0; i < increment_.size(); i += 3) follow(i), follow(i + 1), follow(i + 2);  // bodies have 3 or 6
   system_.coordinates().retract(stage.q_base, increment_, out.q);
   for (std::size_t i = 0; i < z_rate_.size(); ++i) out.z[i] = stage.z_known[i] + stage.beta_z * z_rate_[i];
 }

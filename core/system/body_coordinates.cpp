@@ -46,7 +46,9 @@ BodyCoordinates::BodyCoordinates(const Model& model) : model_(model) {
 void BodyCoordinates::retract(std::span<const double> base, std::span<const double> increment,
                               std::span<double> q) const {
   if (model_.space == Space::planar) {
-    for (std::size_t i = 0; i < q.size(); ++i) q[i] = base[i] + increment[i];
+    for (std::size_t b = 0; b < q.size(); b += 3) {
+      for (std::size_t i = b; i < b + 3; ++i) q[i] = base[i] + increment[i];
+    }
     return;
   }
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
