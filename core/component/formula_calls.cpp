@@ -17,6 +17,7 @@ void FormulaCalls::note(const void* formula, Span<const double> variables) noexc
   const auto found = std::ranges::find(listening->watched_, formula, &Watched::formula);
   if (found == listening->watched_.end() || variables.size > found->variables.size()) return;
   std::ranges::copy(variables, found->variables.begin());
+  found->count = variables.size;
   found->called = true;
 }
 

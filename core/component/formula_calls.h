@@ -15,6 +15,7 @@ class FormulaCalls {
   struct Watched {
     const void* formula;  ///< as it is served
     bool called = false;
+    std::size_t count = 0;  ///< of its variables
     std::array<double, Formula::most_variables> variables{};
   };
   explicit FormulaCalls(std::span<Watched> watched);

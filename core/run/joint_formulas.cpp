@@ -12,13 +12,14 @@ namespace freeplay {
 namespace {
 
 constexpr double kept_whole = std::numeric_limits<double>::infinity();
-constexpr double shown_in_run = 0.01;     // of a formula's range in the run
-constexpr double no_difference = 1e-12;   // of the largest value
-constexpr double found_place = 1.0 / 64;  // of the part that is looked at: where something begins
-constexpr double finest_way = 1e-9;       // of the step: shorter spans are not halved
-constexpr double put_off = 0.125;         // what begins later in the step is left to the next
-constexpr double least_share = 1e-6;      // of a step that it is shortened to at once
-constexpr int most_looks_at_one = 4000;   // at a formula in a step
+constexpr double shown_in_run = 0.01;                   // of a formula's range in the run
+constexpr double no_difference = 1e-12;                 // of the largest value
+constexpr double found_place = 1.0 / 64;                // of the part that is looked at: where something begins
+constexpr double finest_way = 1e-9;                     // of the step: shorter spans are not halved
+constexpr double put_off = 0.125;                       // what begins later in the step is left to the next
+constexpr double least_share = 1e-6;                    // of a step that it is shortened to at once
+constexpr int most_looks_at_one = 4000;                 // at a formula in a step
+constexpr double box_reach = 16.0, quick_change = 4.0;  // of a box, and of the largest step in it: in present steps
 
 }  // namespace
 
@@ -38,6 +39,7 @@ JointFormulas::JointFormulas(RunContext& run) : run_(run), light_(run.system, ru
     rows = std::max(rows, at(element.layout.constraint_rows));
     internal = std::max(internal, at(element.layout.internal_variables));
   }
+  begins_ = ends_ = calls_;
   rate_.resize(internal), jacobian_.resize(12 * rows);
   for (std::vector<double>* numbers : {&phi_, &nu_, &gamma_}) numbers->resize(rows);
 }
@@ -48,7 +50,8 @@ void JointFormulas::add(int joint, const Parameter& parameter, const ParameterVa
                          variables = parameter.variables == nullptr ? "" : parameter.variables;
   const bool turns = run_.model.joints[at(joint)].layout.coordinate == Coordinate::angle;
   const Course::Kind kind = unit == "m" ? Course::Kind::length : turns ? Course::Kind::torque : Course::Kind::force;
-  courses_.push_back({value.served.get(), kind, kind == Course::Kind::length && variables == "x: rad",
+  courses_.push_back({value.served.get(), kind,
+                      kind == Course::Kind::length && variables.find("rad") != std::string_view::npos,
                       MotionPieces(Formula::most_variables)});
   calls_.push_back({value.function_owner.get()});
 }
@@ -58,14 +61,72 @@ void JointFormulas::follow(std::size_t place, const Point& here, const Evaluatio
   for (std::size_t c = 0; c < courses_.size(); ++c) {
     Course& course = courses_[c];
     course.known = calls_[c].called && (place == 0 || course.known);
-    const std::span<Jet> variables = course.variables.end(place);
+    course.count = calls_[c].count;
+    const std::span<Jet> variables = course.variables.end(place).first(course.count);
     for (std::size_t k = 0; k < variables.size(); ++k) {
-      double& value = variables[k].value = calls_[c].variables[k];
-      if (!course.by_angle || place == 0) continue;
-      const double turn = 2.0 * std::numbers::pi;
-      value -= turn * std::round((value - course.variables.end(place - 1)[k].value) / turn);
+      const double value = variables[k].value = calls_[c].variables[k];
+      // A curve about its body begins again there: that step is as its error allows.
+      if (course.by_angle && place > 0 &&
+          std::abs(value - course.variables.end(place - 1)[k].value) > std::numbers::pi) {
+        course.known = false;
+      }
     }
   }
+}
+
+// Steps of a smooth motion change little from one to the next: from both ends of one it goes no farther than that.
+bool JointFormulas::Course::keeps_in_box(std::span<const double> begin, std::span<const double> end) const {
+  for (std::size_t k = 0; k < begin.size(); ++k) {
+    const double low = box_low[k] + most_change[k], high = box_high[k] - most_change[k];
+    const bool inside = begin[k] >= low && begin[k] <= high && end[k] >= low && end[k] <= high;
+    if (!inside || !(std::abs(end[k] - begin[k]) <= most_change[k])) return false;
+  }
+  return true;
+}
+
+bool JointFormulas::stay_known() {
+  if (std::ranges::any_of(courses_, [](const Course& course) { return course.known && !course.has_box; })) return false;
+  // Where the last step ended and nothing has happened since, this one begins with what was found there.
+  if (!(run_.accepted.t() == ends_at_ && run_.restarts == restarts_then_)) {
+    for (const AskedJoint& asked : joints_) ask(asked, point(run_.accepted), run_.e_accepted);
+    ends_ = calls_;
+  }
+  begins_ = ends_;
+  for (const AskedJoint& asked : joints_) ask(asked, point(run_.trial), run_.e_trial);
+  ends_ = calls_, ends_at_ = run_.trial.t(), restarts_then_ = run_.restarts;
+  for (std::size_t c = 0; c < courses_.size(); ++c) {
+    const FormulaCalls::Watched &begin = begins_[c], &end = ends_[c];
+    const Course& course = courses_[c];
+    if (!begin.called || !end.called) continue;
+    if (!(course.has_box &&
+          course.keeps_in_box({begin.variables.data(), begin.count}, {end.variables.data(), begin.count})))
+      return false;
+  }
+  return true;
+}
+
+// The second derivative in every direction in which variables may change there.
+void JointFormulas::find_box(Course& course) {
+  std::array<IntervalJet, Formula::most_variables> ranges;
+  std::array<Jet, Formula::most_variables> middles;
+  const std::size_t count = course.count;
+  for (std::size_t k = 0; k < count; ++k) {
+    double low = unbounded, high = -unbounded;
+    for (std::size_t place = 0; place <= MotionPieces::count; ++place) {
+      const double value = course.variables.end(place)[k].value;
+      low = std::min(low, value), high = std::max(high, value);
+    }
+    const double change = high - low;
+    course.box_low[k] = low - box_reach * change, course.box_high[k] = high + box_reach * change;
+    course.most_change[k] = quick_change * change;
+    ranges[k] = IntervalJet{Interval{course.box_low[k], course.box_high[k]},
+                            Interval{-course.most_change[k], course.most_change[k]}, Interval{}};
+    middles[k] = Jet{0.5 * (low + high), std::nan(""), 0.0};  // at no one rate
+  }
+  FormulaBounds::Bounds bounds{unknown_jet(), {}};
+  course.formula->bound({.half = 0.5, .ranges = {ranges.data(), count}, .at_middle = {middles.data(), count}}, bounds);
+  const Interval& bend = bounds.range.acceleration;
+  course.has_box = (bend.high - bend.low) / 8.0 <= course.allowed;
 }
 
 // A joint that cannot be asked there has no say: the run finds out at its next state.
@@ -92,7 +153,8 @@ void JointFormulas::ask(const AskedJoint& asked, const Point& here, const Evalua
 }
 
 bool JointFormulas::show(Course& course) {
-  std::array<double, Formula::most_variables> variables{};
+  Numbers numbers{};
+  const std::span<double> variables(numbers.data(), course.count);
   for (std::size_t k = 0; k < course.places.shown.size(); ++k) {
     course.variables.at(0.25 * static_cast<double>(k) * course.places.part, variables);
     double& value = course.places.shown[k];
@@ -104,8 +166,10 @@ bool JointFormulas::show(Course& course) {
 // The first place of the span where the formula is not what is shown.
 double JointFormulas::departure(Course& course, double from, double to) {
   if (++course.looks > most_looks_at_one) return kept_whole;
-  std::array<IntervalJet, Formula::most_variables> ranges;
-  std::array<Jet, Formula::most_variables> middles;
+  std::array<IntervalJet, Formula::most_variables> all_ranges;
+  std::array<Jet, Formula::most_variables> all_middles;
+  const std::span<IntervalJet> ranges(all_ranges.data(), course.count);
+  const std::span<Jet> middles(all_middles.data(), course.count);
   course.variables.bound(from, to, ranges, middles);
   const double middle = 0.5 * (from + to), length = course.variables.length();
   FormulaBounds::Bounds bounds{unknown_jet(), {}};
@@ -144,7 +208,10 @@ double JointFormulas::resolved(Course& course) {
       const double to = std::min(places.part, from + 1.0 / static_cast<double>(MotionPieces::count));
       if (from < to) place = departure(course, from, to);
     }
-    if (!(place < kept_whole)) return places.part;
+    if (!(place < kept_whole)) {
+      find_box(course);
+      return places.part;
+    }
     places.part = place > put_off * places.part ? place : 0.5 * places.part;
   } while (places.part >= least_share && show(course));
   return std::max(places.part, least_share);

@@ -24,6 +24,8 @@ class JointFormulas {
   void go_blind() { joints_.clear(), courses_.clear(); }
   /// The begin (0), the ends of quarters of the step, and its end, one after another, as they are evaluated (events).
   void follow(std::size_t place, const Point& here, const Evaluation& e);
+  /// Whether all formulas stay where they have nothing to hide, as their variables at both ends of the step say.
+  bool stay_known();
   /// The part of the step in which each formula is, to a hundredth of its range in the run, as a polynomial through
   /// five places of it shows.
   double resolved();
@@ -34,20 +36,27 @@ class JointFormulas {
   }
 
  private:
+  using Numbers = std::array<double, Formula::most_variables>;
   /// A formula along the step.
   struct Course {
     const ServedFormula* formula;
     enum class Kind { force, torque, length } kind;
-    bool by_angle;  ///< of a closed curve, as good as a turn farther
+    bool by_angle;  ///< of a curve that may be closed
     MotionPieces variables;
     FivePlaces places{};
     double low = unbounded, high = -unbounded;  ///< in the run
     double allowed = 0.0;                       ///< by which it may be off
     int looks = 0;
-    bool known = false;  ///< asked for at all places
+    bool known = false;     ///< asked for at all places
+    std::size_t count = 0;  ///< of its variables
+    /// Where the formula is as good as a parabola in every step in which no variable changes by more than these.
+    Numbers box_low{}, box_high{}, most_change{};
+    bool has_box = false;
+
+    bool keeps_in_box(std::span<const double> begin, std::span<const double> end) const;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.low, self.high);
+      archive(self.low, self.high, self.box_low, self.box_high, self.most_change, self.has_box);
     }
   };
   struct AskedJoint {
@@ -60,12 +69,16 @@ class JointFormulas {
   double resolved(Course& course);
   bool show(Course& course);
   double departure(Course& course, double from, double to);
+  void find_box(Course& course);
 
   RunContext& run_;
   LightLoads light_;
   std::vector<AskedJoint> joints_;
   std::vector<Course> courses_;
-  std::vector<FormulaCalls::Watched> calls_;  // as courses_
+  std::vector<FormulaCalls::Watched> calls_;          // as courses_
+  std::vector<FormulaCalls::Watched> begins_, ends_;  // likewise, of the step that was looked at last
+  double ends_at_ = std::nan("");                     // [s]
+  long restarts_then_ = 0;
   std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;
 };
 

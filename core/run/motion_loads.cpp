@@ -203,12 +203,14 @@ double MotionLoads::resolved(const Load& load, const Formula& formula) {
 
 bool MotionLoads::resolved(double& part, Fault& fault) {
   part = 1.0;
+  longest_ = unbounded;
+  if (loads_.empty() && joints_.stay_known()) return true;
   if (!follow(fault)) return false;
   for (const Load& load : loads_) {
     for (const Formula& formula : load.formulas) part = std::min(part, resolved(load, formula));
   }
   if (joints_.any()) part = std::min(part, joints_.resolved());
-  longest_ = part < 1.0 ? next_longest * part * (run_.trial.t() - run_.accepted.t()) : unbounded;
+  if (part < 1.0) longest_ = next_longest * part * (run_.trial.t() - run_.accepted.t());
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <exception>
@@ -15,19 +16,29 @@ namespace freeplay {
 
 /// F(x) = integral of f from 0 to x, to 1e-10 of the area below |f|. Made once, as polynomials on cells of which each
 /// ends twice as far from 0 as the one before and is cut where f is not smooth, so that a small x keeps its digits; a
-/// value costs no call of f. What lasts less than a 256th of such a cell may be missed. Immutable once it is made.
+/// value costs no call of f. What is smooth and lasts less than a 256th of such a cell may be missed. Immutable once it
+/// is made.
 class IntegralFromZero {
  public:
   IntegralFromZero() = default;
   /// From 0 to `end`, which may be negative. The first cell ends at |x| = `first` and is never cut: what it adds need
-  /// not be known as well. `f` may throw where it has no value.
-  IntegralFromZero(std::function<double(double)> f, double first, double end)
+  /// not be known as well. `f` may throw where it has no value. Cells end at `corners`, where f has kinks or jumps:
+  /// between these nothing is too short.
+  IntegralFromZero(std::function<double(double)> f, double first, double end, std::vector<double> corners = {})
       : f_(std::move(f)), sign_(end < 0.0 ? -1.0 : 1.0) {
+    for (double& corner : corners) corner *= sign_;
+    std::sort(corners.begin(), corners.end());
     double from = 0.0;
-    for (double to = first; from < sign_ * end && whole_; from = to, to *= 2.0) {
+    for (double to = first; from < sign_ * end && whole_; to *= 2.0) {
       most_cells_ = starts_.size() + most_cells;
       nothing_ = rounded * largest(from, to);
-      add(from, to, from > 0.0 ? 0 : most_cuts);
+      const auto corner = std::upper_bound(corners.begin(), corners.end(), from);
+      const auto last = std::lower_bound(corner, corners.end(), to);
+      const int cuts =
+          from > 0.0 ? static_cast<int>(std::bit_width(static_cast<std::size_t>(last - corner))) : most_cuts;
+      for (auto i = corner; i < last; from = *i++) add(from, *i, cuts);
+      add(from, to, cuts);
+      from = to;
     }
   }
 
