@@ -27,7 +27,7 @@ constexpr double most_beyond = 0.1;      // of the way between the ends of a sto
 constexpr double least_beyond = 0.01;    // rad, or of the size of the model
 constexpr double in_turns = 0.5 / std::numbers::pi;
 constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
-constexpr double same_ratio = 1e-6;     // of a belt and of a gear between its pulleys
+constexpr double same_ratio = 1e-6;     // of strands and of a gear between their wheels
 
 class Elements {
  public:
@@ -42,7 +42,7 @@ class Elements {
       judge_damping(j);
       judge_ends(j);
       judge_turn(j);
-      judge_belt(j);
+      judge_strands(j);
     }
   }
 
@@ -263,8 +263,9 @@ class Elements {
         element);
   }
 
-  /// A belt that wants another ratio of its pulleys than the joints leave them, as where gears turn one the other way.
-  void judge_belt(int j) {
+  /// Strands round two wheels that want another ratio of these than the joints leave them, as where gears turn one the
+  /// other way.
+  void judge_strands(int j) {
     const JointElement& element = model_.joints[at(j)];
     const double first = number(element, "first_radius"), second = number(element, "second_radius");
     const auto strands = element.parameters->values.find("strands");
@@ -282,8 +283,8 @@ class Elements {
       return;
     doubt(
         "doubtful-value",
-        fmt::format("'{}' turns '{}' by {:.4g} of '{}', but the joints turn it by {:.4g}, which stretches the belt by "
-                    "{:.3g} m in each turn: check 'strands' and the radii, or the ratio of the gear",
+        fmt::format("'{}' turns '{}' by {:.4g} of '{}', but the joints turn it by {:.4g}, which stretches its strands "
+                    "by {:.3g} m in each turn: check 'strands' and the radii, or the ratio of the gear",
                     element.name, body_name(element.marker_b), own, body_name(element.marker_a), ratio,
                     std::abs(first - sense * ratio * second) / in_turns),
         element);

@@ -1,5 +1,5 @@
 // IdleElements: entries of `forces` that the joints beside them let do nothing, dampers that stop a body at once, stops
-// that it has passed, springs that are wound by a turn, and belts against gears.
+// that it has passed, springs that are wound by a turn, and strands against gears.
 #pragma once
 
 #include "assembly/structure.h"
@@ -10,7 +10,7 @@ namespace freeplay {
 /// bodies lets them not move, or whose two ends it holds at one place; and `doubtful-value` for a damping that stops
 /// what it works on, through joints and drivers, faster than sound crosses it, and for a stop that starts
 /// beyond an end by a tenth of its way; `doubtful-angle` for a torsion spring that starts wound by a whole turn, more
-/// or less by an eighth of it, and `doubtful-value` for a belt on pulleys that joints let turn by another ratio.
+/// or less by an eighth of it, and `doubtful-value` for strands round wheels that joints let turn by another ratio.
 /// `system` stands at the start, `at_start` has its positions and coordinates.
 void doubt_elements(const System& system, const Evaluation& at_start, Structure& structure);
 

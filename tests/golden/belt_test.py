@@ -68,7 +68,7 @@ simulation: {end: %s, output: {interval: 10 ms}, %s}
                         self.assertEqual(bool(found), bool(said), said)
                         if said:
                             self.assertEqual("doubtful-value", said[0]["id"])
-                            self.assertIn("which stretches the belt by %.3g m in each turn" % found, said[0]["message"])
+                            self.assertIn("which stretches its strands by %.3g m in each turn" % found, said[0]["message"])
 
     def test_one_that_turns_a_hand_on_an_arm_is_against_no_gear(self):
         out, _ = self.freeplay("validate", self.model("""

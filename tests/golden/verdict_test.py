@@ -132,14 +132,13 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
         self.assertRegex(found[0]["message"], r"'drivers.circle.inverse_kinematics.path' comes to \S+ in 'x' at t = \S+ s, but its points lie "
                                               "between 0.02 and 0.06: write 'interpolation: linear', or give more points")
 
-    def test_a_hill_that_a_step_goes_over_is_shown_by_rows(self):
+    def test_a_hill_that_is_short_against_a_step_is_met(self):
         # A bead with 0.1 m/s rises by 0.51 mm.
-        for height, width, found in (("1 mm", 3, True), ("0.4 mm", 3, True), ("0.4 mm", 200, False), ("1 mm", 200, False)):
+        for height, width, over in (("1 mm", 3, False), ("0.4 mm", 3, True), ("0.4 mm", 200, True), ("1 mm", 200, True)):
             with self.subTest(height=height, width=width):
                 self.run_model(HILL % (height, width, 2 * width, 2 * width, 3 * width))
-                self.assertEqual(["energy-residual"] if found else [], self.ids(), self.trust)
-        self.run_model(HILL % ("1 mm", 3, 6, 6, 9), "--step", "1 ms")
-        self.assertEqual("good", self.trust["verdict"])
+                self.assertEqual("good", self.trust["verdict"], self.trust)
+                self.assertEqual(over, self.summary["bodies"]["b"]["x"] > 0.0)
 
     def test_what_a_second_run_did_not_come_to_is_not_verified(self):
         out = self.run_model(STIFF, "--verify")
