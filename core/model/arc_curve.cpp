@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "base/angle.h"
+#include "component/formula_calls.h"
 
 namespace freeplay {
 namespace {
@@ -185,6 +187,37 @@ ArcCurve::At ArcCurve::at(double x) const noexcept {
   return {there.value + there.slope * (x - inside), there.slope};
 }
 
+// Where the piece after that at x begins, for ever after the last of an open curve.
+double ArcCurve::end_of_piece(double x) const noexcept {
+  const double first = pieces_.front().from, place = closed_ ? first + within_turn(x - first) : x;
+  const auto next = std::upper_bound(pieces_.begin(), pieces_.end(), place,
+                                     [](double at, const Piece& piece) { return at < piece.from; });
+  if (!closed_) return next == pieces_.end() ? std::numeric_limits<double>::infinity() : next->from;
+  return x + (next == pieces_.end() ? first + whole_turn : next->from) - place;
+}
+
+// Along a piece the slope of a height never turns back, and that of a distance does so once at most: it is looked at in
+// four places and taken to be half as wide again.
+ArcCurve::Range ArcCurve::over(double from, double to) const noexcept {
+  Range out{};
+  bool first = true;
+  for (double begin = from; first || begin < to;) {
+    const double next = end_of_piece(begin), end = next > begin ? std::min(next, to) : to;
+    const double half = 0.5 * (end - begin);
+    Interval slope = Interval::at(at(begin + half).slope);
+    for (const double s : {0.0, 0.25, 0.75, 1.0}) {
+      slope = hull(slope, Interval::at(at(begin + s * (1.0 - 1e-9) * (end - begin)).slope));
+    }
+    const double more = 0.25 * (slope.high - slope.low);
+    slope = {slope.low - more, slope.high + more};
+    const Interval value = Interval::at(at(begin + half).value) + slope * Interval{-half, half};
+    out = first ? Range{value, slope} : Range{hull(out.value, value), hull(out.slope, slope)};
+    first = false;
+    begin = end;
+  }
+  return out;
+}
+
 // Opposite to where it is, it passes zero once more, the other way.
 double ArcCurve::past(std::size_t joint, double x) const noexcept {
   return closed_ ? std::sin(x - pieces_[joint].from) : x - pieces_[joint + 1].from;
@@ -218,28 +251,57 @@ ArcCurve::At ArcCurve::height(const Piece& piece, double x) noexcept {
 
 namespace {
 
+struct ArcFormula final : ServedFormula {
+  explicit ArcFormula(ArcCurve arcs) : curve(std::move(arcs)) {}
+
+  bool may_hide() const noexcept override { return true; }
+  bool value(std::span<const double> variables, double& out) const noexcept override {
+    out = curve.at(variables[0]).value;
+    return true;
+  }
+  void bound(const FormulaBounds::Span& span, FormulaBounds::Bounds& out) const noexcept override {
+    const Jet& x = span.at_middle[0];
+    const ArcCurve::At at = curve.at(x.value);
+    out.at_middle = {at.value, at.slope * x.rate, 0.0};
+    const IntervalJet& way = span.ranges[0];
+    if (!way.value.is_finite()) {
+      out.range = unknown_jet();
+      return;
+    }
+    const ArcCurve::Range range = curve.over(way.value.low, way.value.high);
+    out.range = {range.value, range.slope * way.rate, Interval::whole()};
+    tighten(out.range, out.at_middle, span.half);
+  }
+
+  ArcCurve curve;
+};
+
 constexpr abi::FormulaTable arc_formula{
     sizeof(abi::FormulaTable),
     [](const void* self, Span<const double> variables, double* value, Span<double> slopes, Message*) noexcept {
-      const ArcCurve::At at = static_cast<const ArcCurve*>(self)->at(variables[0]);
+      FormulaCalls::note(self, variables);
+      const ArcCurve::At at = static_cast<const ArcFormula*>(self)->curve.at(variables[0]);
       *value = at.value;
       std::ranges::fill(slopes, 0.0);
       if (!slopes.empty()) slopes[0] = at.slope;
       return Status::ok;
     },
-    [](const void* self) noexcept { return static_cast<std::int32_t>(static_cast<const ArcCurve*>(self)->joints()); },
+    [](const void* self) noexcept {
+      return static_cast<std::int32_t>(static_cast<const ArcFormula*>(self)->curve.joints());
+    },
     [](const void* self, Span<const double> variables, Span<double> values) noexcept {
       for (std::size_t i = 0; i < values.size; ++i) {
-        values[i] = static_cast<const ArcCurve*>(self)->past(i, variables[0]);
+        values[i] = static_cast<const ArcFormula*>(self)->curve.past(i, variables[0]);
       }
     }};
 
 }  // namespace
 
 void set_arc_formula(ParameterValue& value, ArcCurve curve) {
-  const auto served = std::make_shared<const ArcCurve>(std::move(curve));
+  const auto served = std::make_shared<const ArcFormula>(std::move(curve));
   value.formula = Formula(arc_formula, served.get());
   value.function_owner = served;
+  value.served = served;
 }
 
 }  // namespace freeplay

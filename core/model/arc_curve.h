@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/interval.h"
 #include "component/parameter_block.h"
 
 namespace freeplay {
@@ -38,6 +39,11 @@ class ArcCurve {
   };
   /// At an angle [rad] or x [m].
   At at(double x) const noexcept;
+  /// What value and slope can come to from one place to another, `from` being less.
+  struct Range {
+    Interval value, slope;
+  };
+  Range over(double from, double to) const noexcept;
   /// Numbers of which one passes zero where the curve goes from an arc to a line or another arc.
   std::size_t joints() const { return closed_ && pieces_.size() == 1 ? 0 : pieces_.size() - (closed_ ? 0 : 1); }
   double past(std::size_t joint, double x) const noexcept;
@@ -52,6 +58,7 @@ class ArcCurve {
   ArcCurve() = default;
   At distance(const Piece& piece, double angle) const noexcept;
   static At height(const Piece& piece, double x) noexcept;
+  double end_of_piece(double x) const noexcept;
 
   class Maker;
   bool closed_ = false;

@@ -75,7 +75,7 @@ CONTACT = ("platform_x", "platform_y")
 def four_bar(n):
     return Problem("four-bar-%d" % n, "validation/a02-chain", 1.0, ("frame.column1.link/top.x", "frame.column1.link/top.y"),
                    1e-4, (2e-2, 1e-2, 5e-3, 2e-3, 1e-3), (1e-2, 1e-3, 1e-4), ("windows=%d" % n,), best=1e-9,
-                   between=(1e-1, 3e-2, 1.5e-3),
+                   between=(1e-1, 5e-2, 3e-2, 2e-2, 5e-3, 1.5e-3),
                    trajectory="p2_fourbar_n%d.csv" % n, columns=("B0_x", "B0_y"), hand="p2", hand_options=("--n", str(n)))
 
 
@@ -87,7 +87,7 @@ PROBLEMS = {
     "slider-crank": Problem(
         "slider-crank", "slider-crank", 8e-3, ("body.slider.x", "body.slider.y"), 1e-6,
         (2e-6, 1e-6, 5e-7, 2e-7, 1e-7, 5e-8), (1e-4, 1e-5, 3e-6, 1e-6, 1e-7, 1e-8),
-        between=(5e-4, 4e-4, 3e-4, 2.5e-4, 2e-4, 5e-5, 3e-5, 2e-5, 5e-6), best=1e-13, timed_interval="1 ms",
+        between=(5e-4, 4.5e-4, 4e-4, 3.5e-4, 3e-4, 2.5e-4, 2e-4, 1.5e-4, 7e-5, 5e-5, 3e-5, 2e-5, 5e-6), best=1e-13, timed_interval="1 ms",
         trajectory="p1_slider_crank_c500_mu000.csv", columns=("slider_x", "slider_y"), hand="p1",
         hand_options=("--window", "0.008", "--horizon", "0.008", "--sample", "2e-5")),
     "3-rrr": Problem(

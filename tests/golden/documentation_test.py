@@ -62,7 +62,7 @@ class Tutorial:
 
 
 # Words that ./dev does not pass on to the program, and that take long or change the sources.
-OF_DEV = ("test", "soak", "fuzz", "build", "format", "lint", "coverage", "races", "docs", "bench", "accuracy", "clean", "package")
+OF_DEV = ("test", "soak", "fuzz", "build", "tune", "format", "lint", "coverage", "races", "docs", "bench", "accuracy", "clean", "package")
 
 
 class Documentation(ProgramTest):

@@ -139,6 +139,13 @@ simulation: {end: 3 s, accuracy: 10 um, output: {discard: 2 s}}
                 self.run_model(HILL % (height, width, 2 * width, 2 * width, 3 * width))
                 self.assertEqual("good", self.trust["verdict"], self.trust)
                 self.assertEqual(over, self.summary["bodies"]["b"]["x"] > 0.0)
+        # The same of arcs.
+        for top, over in (("-2 mm", False), ("-2.6 mm", True)):
+            with self.subTest(top=top):
+                arcs = "curve: {arcs: [[-2, 0], [-4 mm, 3 mm, 3 mm], [0, %s, -3 mm], [4 mm, 3 mm, 3 mm], [2, 0]]}}}\n" % top
+                self.run_model(HILL[:HILL.index("curve:")] + arcs + HILL[HILL.index("simulation:"):])
+                self.assertEqual("good", self.trust["verdict"], self.trust)
+                self.assertEqual(over, self.summary["bodies"]["b"]["x"] > 0.0)
 
     def test_what_a_second_run_did_not_come_to_is_not_verified(self):
         out = self.run_model(STIFF, "--verify")
