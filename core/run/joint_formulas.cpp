@@ -17,7 +17,7 @@ constexpr double no_difference = 1e-12;                 // of the largest value
 constexpr double found_place = 1.0 / 64;                // of the part that is looked at: where something begins
 constexpr double finest_way = 1e-9;                     // of the step: shorter spans are not halved
 constexpr double put_off = 0.125;                       // what begins later in the step is left to the next
-constexpr double least_share = 1e-6;                    // of a step that it is shortened to at once
+constexpr double shortest_share = 1e-6;                 // of a step that it is shortened to at once
 constexpr int most_looks_at_one = 4000;                 // at a formula in a step
 constexpr double box_reach = 16.0, quick_change = 4.0;  // of a box, and of the largest step in it: in present steps
 
@@ -213,8 +213,8 @@ double JointFormulas::resolved(Course& course) {
       return places.part;
     }
     places.part = place > put_off * places.part ? place : 0.5 * places.part;
-  } while (places.part >= least_share && show(course));
-  return std::max(places.part, least_share);
+  } while (places.part >= shortest_share && show(course));
+  return std::max(places.part, shortest_share);
 }
 
 double JointFormulas::resolved() {
