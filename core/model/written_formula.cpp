@@ -15,17 +15,23 @@ struct WrittenFormula final : ServedFormula {
   WrittenFormula(const Expression& expression, Location at, bool inside)
       : formula(expression), begin(std::move(at)), places_inside(inside) {}
 
-  bool may_hide() const noexcept override { return bounds.may_hide() || formula.switches() > 0; }
+  bool may_hide() const noexcept override {
+    return formula.switches() <= most_switches && (bounds.may_hide() || formula.switches() > 0);
+  }
   bool value(std::span<const double> variables, double& out) const noexcept override {
     EvaluationFailure ignored;
     return formula.value({0.0, variables, nullptr}, out, ignored);
   }
   void bound(const FormulaBounds::Span& span, FormulaBounds::Bounds& out) const noexcept override {
-    std::array<FormulaBounds::Bounds, 16> ignored;
-    if (static_cast<std::size_t>(formula.switches()) <= ignored.size()) return bounds.bound(span, out, ignored);
-    out.range = unknown_jet();
+    formula.switches() <= few_switches ? bound_with<few_switches>(span, out) : bound_with<most_switches>(span, out);
+  }
+  template <int count>
+  void bound_with(const FormulaBounds::Span& span, FormulaBounds::Bounds& out) const noexcept {
+    std::array<FormulaBounds::Bounds, count> ignored;
+    bounds.bound(span, out, ignored);
   }
 
+  static constexpr int few_switches = 4, most_switches = 200;
   StateFormula formula;
   Location begin;
   bool places_inside;

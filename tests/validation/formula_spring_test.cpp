@@ -102,6 +102,18 @@ TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
   }
 }
 
+// A staircase of thirty steps of 0.1 N, 10 mm apart: at x beyond them it has taken 0.1 (30 x - 0.01 (1 + ... + 30)) J.
+TEST(FormulaSpring, AStaircaseOfManyStepsTakesItsEnergyInFewSteps) {
+  std::string stairs = "spring: \"0 N";
+  for (int i = 1; i <= 30; ++i) stairs += " + if(x > " + number(0.01 * i) + " m, 0.1 N, 0 N)";
+  const ModelRun run(sled(stairs + "\"", 0.0, 1.0, "end: 0.5, accuracy: 1e-7, output: {interval: 0.1}"));
+  ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+  EXPECT_LT(run.outcome().steps, 3000);
+  const double x = run.last("joint.rail.position") - 1.0, v = run.last("joint.rail.speed");
+  ASSERT_GT(x, 0.3);
+  EXPECT_NEAR(v * v, 1.0 - (3.0 * x - 0.1 * 0.01 * 30 * 31 / 2), 1e-6);
+}
+
 // 2 v' = -3 v |v| from 4 m/s: v = 4/(1 + 6 t).
 TEST(FormulaSpring, ADamperMayBeQuadratic) {
   const ModelRun run(
