@@ -17,6 +17,10 @@ class FormulaCalls {
     bool called = false;
     std::size_t count = 0;  ///< of its variables
     std::array<double, Formula::most_variables> variables{};
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.called, self.count, self.variables);
+    }
   };
   explicit FormulaCalls(std::span<Watched> watched);
   ~FormulaCalls();

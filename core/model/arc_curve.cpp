@@ -197,7 +197,7 @@ double ArcCurve::end_of_piece(double x) const noexcept {
 }
 
 // Along a piece the slope of a height never turns back, and that of a distance does so once at most: it is looked at in
-// four places and taken to be half as wide again.
+// five places and taken to be half as wide again.
 ArcCurve::Range ArcCurve::over(double from, double to) const noexcept {
   Range out{};
   bool first = true;

@@ -58,6 +58,7 @@ void JointFormulas::add(int joint, const Parameter& parameter, const ParameterVa
 
 void JointFormulas::follow(std::size_t place, const Point& here, const Evaluation& e) {
   for (const AskedJoint& asked : joints_) ask(asked, here, e);
+  ends_ = calls_, ends_at_ = here.t;
   for (std::size_t c = 0; c < courses_.size(); ++c) {
     Course& course = courses_[c];
     course.known = calls_[c].called && (place == 0 || course.known);
@@ -86,14 +87,14 @@ bool JointFormulas::Course::keeps_in_box(std::span<const double> begin, std::spa
 
 bool JointFormulas::stay_known() {
   if (std::ranges::any_of(courses_, [](const Course& course) { return course.known && !course.has_box; })) return false;
-  // Where the last step ended and nothing has happened since, this one begins with what was found there.
-  if (!(run_.accepted.t() == ends_at_ && run_.restarts == restarts_then_)) {
+  // Where the last step ended this one begins, with what was found there: no event moves a body.
+  if (run_.accepted.t() != ends_at_) {
     for (const AskedJoint& asked : joints_) ask(asked, point(run_.accepted), run_.e_accepted);
     ends_ = calls_;
   }
   begins_ = ends_;
   for (const AskedJoint& asked : joints_) ask(asked, point(run_.trial), run_.e_trial);
-  ends_ = calls_, ends_at_ = run_.trial.t(), restarts_then_ = run_.restarts;
+  ends_ = calls_, ends_at_ = run_.trial.t();
   for (std::size_t c = 0; c < courses_.size(); ++c) {
     const FormulaCalls::Watched &begin = begins_[c], &end = ends_[c];
     const Course& course = courses_[c];

@@ -32,7 +32,7 @@ class JointFormulas {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.courses_);
+    archive(self.courses_, self.ends_, self.ends_at_);
   }
 
  private:
@@ -56,7 +56,7 @@ class JointFormulas {
     bool keeps_in_box(std::span<const double> begin, std::span<const double> end) const;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.low, self.high, self.box_low, self.box_high, self.most_change, self.has_box);
+      archive(self.low, self.high, self.box_low, self.box_high, self.most_change, self.has_box, self.known);
     }
   };
   struct AskedJoint {
@@ -78,7 +78,6 @@ class JointFormulas {
   std::vector<FormulaCalls::Watched> calls_;          // as courses_
   std::vector<FormulaCalls::Watched> begins_, ends_;  // likewise, of the step that was looked at last
   double ends_at_ = std::nan("");                     // [s]
-  long restarts_then_ = 0;
   std::vector<double> rate_, phi_, jacobian_, nu_, gamma_;
 };
 

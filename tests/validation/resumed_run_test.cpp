@@ -18,6 +18,9 @@ struct Resumption {
   enum Steps { own, fixed, adaptive } steps = own;
   long most_steps = 1500;
   int rows_in_contact = 0;
+  std::string text = "";  ///< of a model that is not below mechanisms/
+
+  std::string source() const { return text.empty() ? mechanism(model) : text; }
 };
 void PrintTo(const Resumption& c, std::ostream* out) {
   constexpr const char* kinds[] = {"", " fixed", " adaptive"};
@@ -33,7 +36,7 @@ bool same_bits(std::span<const double> a, std::span<const double> b) {
 struct Prepared {
   explicit Prepared(const Resumption& what) : model(model_of(what)), system(*model) { start = assemble(system); }
   static std::unique_ptr<Model> model_of(const Resumption& what) {
-    std::unique_ptr<Model> model = load(mechanism(what.model), options(what));
+    std::unique_ptr<Model> model = load(what.source(), options(what));
     model->settings.rows_in_contact = what.rows_in_contact;
     return model;
   }
@@ -41,7 +44,7 @@ struct Prepared {
     BuildOptions out;
     if (!what.integrator.empty()) out.integrator = what.integrator;
     if (what.steps == Resumption::own) return out;
-    const std::unique_ptr<Model> model = load(mechanism(what.model), out);
+    const std::unique_ptr<Model> model = load(what.source(), out);
     const Settings& own = model->settings;
     const bool is_adaptive = own.adaptive || own.accuracy > 0.0;
     if (what.steps == Resumption::fixed && is_adaptive) out.step = 2.5e-4 * (own.end - own.start);
@@ -177,6 +180,21 @@ void resume_everywhere(const Resumption& what, Until until = Until::end) {
   EXPECT_TRUE(!saved.empty() || whole.outcome.status == RunStatus::failed);
 }
 
+// Its formulas have many forms and narrow places, which are looked at inside of steps.
+const Resumption detents{"detents",
+                         "verner7",
+                         Resumption::own,
+                         1500,
+                         0,
+                         "freeplay: 1\n"
+                         "bodies: {m: {mass: 1, inertia: 0.01, pose: {position: [0.35, 0]}}}\n"
+                         "joints: {rail: {type: prismatic, between: [ground, m]}}\n"
+                         "forces:\n"
+                         "  s: {type: spring-damper, between: [ground, m], stiffness: 100 N/m, free_length: 0.2 m, "
+                         "damper: \"0.1 N*sign(v)\",\n"
+                         "      spring: \"2 N*tanh((x - 0.05 m)/(0.1 mm)) + 4 N*exp(-((x + 0.08 m)/(0.5 mm))^2)\"}\n"
+                         "simulation: {end: 2 s, accuracy: 1 um, output: {interval: 50 ms}}\n"};
+
 class ResumedRun : public ::testing::TestWithParam<Resumption> {};
 TEST_P(ResumedRun, EndsBitForBitWhereTheWholeRunEnds) { resume_everywhere(GetParam()); }
 INSTANTIATE_TEST_SUITE_P(Models, ResumedRun,
@@ -190,7 +208,8 @@ INSTANTIATE_TEST_SUITE_P(Models, ResumedRun,
                                            Resumption{"validation/cradle-5", "", Resumption::own},
                                            Resumption{"3-rrr", "", Resumption::own, 4000, 3},
                                            Resumption{"slider-crank", "dopri5", Resumption::adaptive, 1500, 10},
-                                           Resumption{"spatial/slider-crank", "", Resumption::adaptive, 1500, 5}));
+                                           Resumption{"spatial/slider-crank", "", Resumption::adaptive, 1500, 5},
+                                           detents));
 
 std::vector<std::string> shipped_models() {
   const std::filesystem::path folder = std::string(source_folder()) + "/mechanisms";
