@@ -6,7 +6,10 @@
 #include <span>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "base/index.h"
+#include "run/hidden_change.h"
 
 namespace freeplay {
 namespace {
@@ -19,12 +22,12 @@ constexpr double finest_way = 1e-9;                     // of the step: shorter 
 constexpr double put_off = 0.125;                       // what begins later in the step is left to the next
 constexpr double shortest_share = 1e-6;                 // of a step that it is shortened to at once
 constexpr int most_looks_at_one = 4000;                 // at a formula in a step
+constexpr int most_looks_in_step = 200;                 // in one of one size
 constexpr double box_reach = 16.0, quick_change = 4.0;  // of a box, and of the largest step in it: in present steps
 
 }  // namespace
 
 JointFormulas::JointFormulas(RunContext& run) : run_(run), light_(run.system, run.allowed) {
-  if (!run.adaptive) return;
   std::size_t rows = 0, internal = 0;
   for (std::size_t j = 0; j < run.model.joints.size(); ++j) {
     const JointElement& element = run.model.joints[j];
@@ -85,8 +88,7 @@ bool JointFormulas::Course::keeps_in_box(std::span<const double> begin, std::spa
   return true;
 }
 
-bool JointFormulas::stay_known() {
-  if (std::ranges::any_of(courses_, [](const Course& course) { return course.known && !course.has_box; })) return false;
+void JointFormulas::ask_ends() {
   // Where the last step ended this one begins, with what was found there: no event moves a body.
   if (run_.accepted.t() != ends_at_) {
     for (const AskedJoint& asked : joints_) ask(asked, point(run_.accepted), run_.e_accepted);
@@ -95,6 +97,11 @@ bool JointFormulas::stay_known() {
   begins_ = ends_;
   for (const AskedJoint& asked : joints_) ask(asked, point(run_.trial), run_.e_trial);
   ends_ = calls_, ends_at_ = run_.trial.t();
+}
+
+bool JointFormulas::stay_known() {
+  if (std::ranges::any_of(courses_, [](const Course& course) { return course.known && !course.has_box; })) return false;
+  ask_ends();
   for (std::size_t c = 0; c < courses_.size(); ++c) {
     const FormulaCalls::Watched &begin = begins_[c], &end = ends_[c];
     const Course& course = courses_[c];
@@ -164,21 +171,25 @@ bool JointFormulas::show(Course& course) {
   return true;
 }
 
-// The first place of the span where the formula is not what is shown.
-double JointFormulas::departure(Course& course, double from, double to) {
-  if (++course.looks > most_looks_at_one) return kept_whole;
+void JointFormulas::bound(const Course& course, double from, double to, FormulaBounds::Bounds& bounds) const {
   std::array<IntervalJet, Formula::most_variables> all_ranges;
   std::array<Jet, Formula::most_variables> all_middles;
   const std::span<IntervalJet> ranges(all_ranges.data(), course.count);
   const std::span<Jet> middles(all_middles.data(), course.count);
   course.variables.bound(from, to, ranges, middles);
-  const double middle = 0.5 * (from + to), length = course.variables.length();
-  FormulaBounds::Bounds bounds{unknown_jet(), {}};
-  course.formula->bound({.middle = course.variables.time(middle),
-                         .half = 0.5 * (to - from) * length,
+  course.formula->bound({.middle = course.variables.time(0.5 * (from + to)),
+                         .half = 0.5 * (to - from) * course.variables.length(),
                          .ranges = ranges,
                          .at_middle = middles},
                         bounds);
+}
+
+// The first place of the span where the formula is not what is shown.
+double JointFormulas::departure(Course& course, double from, double to) {
+  if (++course.looks > most_looks_at_one) return kept_whole;
+  const double middle = 0.5 * (from + to), length = course.variables.length();
+  FormulaBounds::Bounds bounds{unknown_jet(), {}};
+  bound(course, from, to, bounds);
   if (course.places.show(bounds, from, to, length, course.allowed)) return kept_whole;
   const bool leaves =
       std::abs(bounds.at_middle.value - course.places.polynomial(middle, length).value) > course.allowed;
@@ -227,6 +238,121 @@ double JointFormulas::resolved() {
     part = std::min(part, resolved(course));
   }
   return part;
+}
+
+bool JointFormulas::note_ends() {
+  ask_ends();
+  bool open = false;
+  for (std::size_t c = 0; c < courses_.size(); ++c) {
+    const FormulaCalls::Watched &begin = begins_[c], &end = ends_[c];
+    Course& course = courses_[c];
+    course.count = begin.count;
+    course.open = begin.called && end.called &&
+                  note_ends(course, {begin.variables.data(), begin.count}, {end.variables.data(), begin.count});
+    open = open || course.open;
+  }
+  return open;
+}
+
+// Whether it can go beyond what it is at both ends, in the ranges that its variables may have in the step: theirs at
+// the ends, made wider by a quarter of what they changed by, as where they turn.
+bool JointFormulas::note_ends(Course& course, std::span<const double> begin, std::span<const double> end) {
+  std::array<Interval, Formula::most_variables> all_ranges;
+  const std::span<Interval> ranges(all_ranges.data(), begin.size());
+  bool in_box = course.has_box;
+  for (std::size_t k = 0; k < begin.size(); ++k) {
+    const double change = std::abs(end[k] - begin[k]);
+    // A curve about its body begins again there.
+    if (course.by_angle && change > std::numbers::pi) return false;
+    const double more = 0.25 * std::max(change, course.last_change[k]);
+    course.last_change[k] = change;
+    ranges[k] = {std::min(begin[k], end[k]) - more, std::max(begin[k], end[k]) + more};
+    in_box = in_box && ranges[k].low >= course.box_low[k] && ranges[k].high <= course.box_high[k];
+  }
+  double a = 0.0, b = 0.0;
+  if (!course.formula->value(begin, a) || !course.formula->value(end, b)) return false;
+  if (!std::isfinite(a) || !std::isfinite(b)) return false;
+  const auto [low, high] = std::minmax(a, b);
+  course.low = std::min(course.low, low), course.high = std::max(course.high, high);
+  if (in_box) return false;
+  const Interval all = values(course, ranges);
+  course.has_box = false;
+  if (!(std::max(all.high - high, low - all.low) <= hidden(course))) return true;
+  for (std::size_t k = 0; k < begin.size(); ++k) {
+    const double more = box_reach * (ranges[k].high - ranges[k].low);
+    course.box_low[k] = ranges[k].low - more, course.box_high[k] = ranges[k].high + more;
+    ranges[k] = {course.box_low[k], course.box_high[k]};
+  }
+  const Interval in_all = values(course, ranges);
+  course.has_box = in_all.high - in_all.low <= hidden(course);
+  return false;
+}
+
+// By how much more it may be off than both ends of a step show.
+double JointFormulas::hidden(const Course& course) {
+  const double largest = std::max(std::abs(course.low), std::abs(course.high));
+  return std::max({course.beyond, hidden_part * (course.high - course.low), no_difference * largest});
+}
+
+Interval JointFormulas::values(const Course& course, std::span<const Interval> ranges) {
+  std::array<IntervalJet, Formula::most_variables> jets;
+  std::array<Jet, Formula::most_variables> middles;
+  for (std::size_t k = 0; k < ranges.size(); ++k) {
+    jets[k] = {ranges[k], Interval::whole(), Interval::whole()};
+    middles[k] = {0.5 * (ranges[k].low + ranges[k].high), std::nan(""), std::nan("")};
+  }
+  FormulaBounds::Bounds bounds{unknown_jet(), {}};
+  course.formula->bound({.ranges = {jets.data(), ranges.size()}, .at_middle = {middles.data(), ranges.size()}}, bounds);
+  return bounds.range.value;
+}
+
+void JointFormulas::note_inside() {
+  for (Course& course : courses_) {
+    if (!course.open || !course.known) continue;
+    course.variables.take(run_.accepted.t(), run_.trial.t() - run_.accepted.t());
+    course.variables.fit_rates();
+    course.looks = 0;
+    course.places.part = 1.0;
+    if (!show(course)) continue;
+    for (std::size_t k = 0; k < MotionPieces::count; ++k) {
+      const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
+      seek_beyond(course, from, from + 1.0 / static_cast<double>(MotionPieces::count));
+    }
+  }
+}
+
+void JointFormulas::seek_beyond(Course& course, double from, double to) {
+  if (++course.looks > most_looks_in_step) return;
+  FormulaBounds::Bounds bounds{unknown_jet(), {}};
+  bound(course, from, to, bounds);
+  const auto [low, high] = std::minmax(course.places.shown.front(), course.places.shown.back());
+  const auto beyond = [&, low = low, high = high](const Interval& range) {
+    return std::max(range.high - high, low - range.low);
+  };
+  if (!(beyond(bounds.range.value) > hidden(course))) return;
+  const double middle = 0.5 * (from + to), here = beyond(Interval::at(bounds.at_middle.value));
+  if (here > hidden(course)) course.beyond = here, course.at = course.variables.time(middle);
+  if (to - from < finest_way) return;
+  seek_beyond(course, from, middle);
+  seek_beyond(course, middle, to);
+}
+
+void JointFormulas::format() {
+  for (const AskedJoint& asked : joints_) {
+    const JointElement& joint = run_.model.joints[at(asked.joint)];
+    for (std::size_t c = asked.first; c < asked.end; ++c) {
+      const Course& course = courses_[c];
+      const HiddenChange change{.beyond = course.beyond,
+                                .at = course.at,
+                                .range = std::max(course.high - course.low, 0.0) + course.beyond,
+                                .unit = course.kind == Course::Kind::length   ? "m"
+                                        : course.kind == Course::Kind::torque ? "N m"
+                                                                              : "N"};
+      if (!change.counts()) continue;
+      change.say(run_, fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name));
+      break;
+    }
+  }
 }
 
 }  // namespace freeplay

@@ -13,8 +13,7 @@ namespace freeplay {
 
 /// The force of a spring or a curve may change in a small part of the way that its variables go in a step, where no
 /// stage of an integrator asks for it. At five places of the step joints are asked what they ask their formulas for;
-/// along cubics between them the formulas are bounded, so that nothing is too narrow to be found. In runs with error
-/// control.
+/// along cubics between them the formulas are bounded, so that nothing is too narrow to be found.
 class JointFormulas {
  public:
   [[gnu::cold]] explicit JointFormulas(RunContext& run);
@@ -29,6 +28,13 @@ class JointFormulas {
   /// The part of the step in which each formula is, to a hundredth of its range in the run, as a polynomial through
   /// five places of it shows.
   double resolved();
+
+  /// Of a step of one size: notes what its ends show. Whether a formula may go beyond that inside, so that follow() is
+  /// to be called for its places, and note_inside() after.
+  bool note_ends();
+  void note_inside();
+  /// Once a run in steps of one size is over: formulas that do more inside of steps than their ends show.
+  void format();
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
@@ -47,8 +53,11 @@ class JointFormulas {
     double low = unbounded, high = -unbounded;  ///< in the run
     double allowed = 0.0;                       ///< by which it may be off
     int looks = 0;
-    bool known = false;     ///< asked for at all places
-    std::size_t count = 0;  ///< of its variables
+    bool known = false;             ///< asked for at all places
+    std::size_t count = 0;          ///< of its variables
+    double beyond = 0.0, at = 0.0;  ///< farthest beyond both ends of a step of one size, and when [s]
+    bool open = false;              ///< whether it may be farther in the present one
+    Numbers last_change{};          ///< of the variables, in the last such step
     /// Where the formula is as good as a parabola in every step in which no variable changes by more than these.
     Numbers box_low{}, box_high{}, most_change{};
     bool has_box = false;
@@ -57,6 +66,7 @@ class JointFormulas {
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.low, self.high, self.box_low, self.box_high, self.most_change, self.has_box, self.known);
+      archive(self.beyond, self.at, self.last_change);
     }
   };
   struct AskedJoint {
@@ -70,6 +80,12 @@ class JointFormulas {
   bool show(Course& course);
   double departure(Course& course, double from, double to);
   void find_box(Course& course);
+  void ask_ends();
+  bool note_ends(Course& course, std::span<const double> begin, std::span<const double> end);
+  static double hidden(const Course& course);
+  static Interval values(const Course& course, std::span<const Interval> ranges);
+  void seek_beyond(Course& course, double from, double to);
+  void bound(const Course& course, double from, double to, FormulaBounds::Bounds& bounds) const;
 
   RunContext& run_;
   LightLoads light_;

@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "base/index.h"
 #include "run/dense_step.h"
+#include "run/hidden_change.h"
 
 namespace freeplay {
 namespace {
@@ -14,7 +13,6 @@ namespace {
 constexpr double no_departure = std::numeric_limits<double>::infinity();
 constexpr double shown_part = 0.01;        // of a formula's range in the step
 constexpr double shown_alone = 1e-5;       // of it where loads move nothing: means and peaks of forces are by parabolas
-constexpr double hidden_part = 0.1;        // of its range in the run: more is not shown by steps of one size
 constexpr double finest_span = 1e-9;       // of the step: shorter spans are not halved
 constexpr double same_begin = 1.0 / 64.0;  // to which it is known where something begins
 constexpr double late_part = 0.125;        // what begins later in the step is left to the next
@@ -226,13 +224,15 @@ void MotionLoads::note() {
     }
     load.motion.values_at_end(MotionPieces::count, load.end_values);
   }
+  const bool open_joint = joints_.any() && joints_.note_ends();
   Fault ignored;
-  if (!open || !follow(ignored)) return;
+  if (!(open || open_joint) || !follow(ignored)) return;
   for (Load& load : loads_) {
     for (Formula& formula : load.formulas) {
       if (formula.open) note(load, formula);
     }
   }
+  if (open_joint) joints_.note_inside();
 }
 
 // Where the last step ended and nothing has happened since, this one begins with what was found there.
@@ -346,29 +346,18 @@ void MotionLoads::seek_beyond(Course& course, Formula& formula, double from, dou
 
 void MotionLoads::format() {
   if (run_.adaptive) return;
-  const double step = std::min(run_.settings.step, run_.settings.interval);
   for (const Load& load : loads_) {
-    const std::string& element = load.load->words;
     for (const Formula& formula : load.formulas) {
-      const double range = std::max(formula.high - formula.low, 0.0) + formula.beyond;
-      if (!(formula.beyond > hidden_part * range)) continue;
-      const char* const unit = load.load->turns ? "N m" : "N";
-      run_.warnings.push_back(fmt::format(
-          "{}: at t = {:.9g} s, inside a step of {:.3g} s, it goes {:.4g} {} beyond what it is at both ends, and acts "
-          "as if it did not; ask for an accuracy instead, or for shorter steps",
-          element, formula.at, step, formula.beyond, unit));
-      run_.outcome.doubts.push_back(
-          {.id = "unresolved-input",
-           .level = Trust::doubtful,
-           .message =
-               fmt::format("{} changes with the motion at t = {:.9g} s in a way that steps of {:.3g} s do not show",
-                           element, formula.at, step),
-           .element = element,
-           .value = formula.beyond,
-           .limit = hidden_part * range});
+      const HiddenChange change{.beyond = formula.beyond,
+                                .at = formula.at,
+                                .range = std::max(formula.high - formula.low, 0.0) + formula.beyond,
+                                .unit = load.load->turns ? "N m" : "N"};
+      if (!change.counts()) continue;
+      change.say(run_, load.load->words);
       break;
     }
   }
+  joints_.format();
 }
 
 }  // namespace freeplay

@@ -209,7 +209,7 @@ bool Recorder::write_events() {
       statistics_.counts(happening.time) ? clearances_.add_contact(happening.joint, happening.time, *ended)
                                          : clearances_.add_contact_before(happening.joint, *ended);
     }
-    statistics_.note_event(happening.joint, happening.event, run_.events.fields(happening));
+    statistics_.largest().note_event(happening.joint, happening.event, run_.events.fields(happening));
     contact_rows_.pass(happening.joint, happening.event, happening.time, run_.events.fields(happening));
     for (Sink* sink : sinks_) {
       sink->event({happening.time, happening.joint, happening.event, run_.events.fields(happening), ended});
@@ -328,7 +328,7 @@ bool Recorder::write_row_at(double t) {
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) {
     if (!contact_rows_.idle()) {
-      statistics_.note(row_between_);
+      statistics_.note_inside(row_between_);
       contact_rows_.hold(row_between_);
       return true;
     }

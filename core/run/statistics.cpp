@@ -80,8 +80,14 @@ void Statistics::note(std::span<const double> row) {
   largest_.see(row, t, counts(t));
 }
 
-void Statistics::note_written(std::span<const double> row) {
+void Statistics::note_inside(std::span<const double> row) {
   note(row);
+  const double t = row[at(channels_.time)];
+  if (long_steps_ && seen_ && t > last_time_) add_inside(row, t);
+}
+
+void Statistics::note_written(std::span<const double> row) {
+  note_inside(row);
   if (counts(row[at(channels_.time)])) largest_.note_written();
 }
 
@@ -127,6 +133,13 @@ void Statistics::add(std::span<const double> row, std::span<const double> driver
 }
 
 // Of the row that was noted last.
+void Statistics::add_inside(std::span<const double> row, double t) {
+  add_means(row, t - last_time_, false);
+  duration_ += t - last_time_;
+  last_time_ = t;
+}
+
+// Of the row that was noted last.
 void Statistics::add_means(std::span<const double> row, double dt, bool first) {
   const std::span<const double> values = largest_.last();
   each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add(values[place], dt, first, long_steps_); });
@@ -143,9 +156,7 @@ bool Statistics::end_stretch(std::span<const double> row, const std::function<st
   note(row);
   const double t = row[at(channels_.time)];
   if (!seen_ || !counts(t)) return false;
-  add_means(row, t - last_time_, false);
-  duration_ += t - last_time_;
-  last_time_ = t;
+  add_inside(row, t);
   if (wants_middle()) {
     if (const std::span<const double> half_way = middle(); !half_way.empty()) {
       note(half_way);

@@ -33,8 +33,8 @@ struct StatisticsWindow {
 };
 
 /// Accumulates while a run goes on; means weigh each step by its length (trapezoidal rule; where steps are long, by the
-/// parabolas through the ends of two), and begin with the first row that is added from the instant on that `discard`
-/// names. Rows before it have maxima of their own.
+/// parabolas through their ends and the rows inside), and begin with the first row that is added from the instant on
+/// that `discard` names. Rows before it have maxima of their own.
 class Statistics {
  public:
   /// `long_steps`: as an accuracy chooses them, which end where values jump.
@@ -51,6 +51,8 @@ class Statistics {
            std::span<const double> force_work, double position, double velocity);
   /// A row inside a step: its values may be the largest.
   void note(std::span<const double> row);
+  /// The same of one that is as accurate as the ends of steps, and a node of means; in the order of time.
+  void note_inside(std::span<const double> row);
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
   /// instant, is on the other side. False where it does not count. A step that is the only one since the last such
   /// instant has no third point for a parabola: `middle` gives the row half way, or none, unless the step is a small
@@ -62,8 +64,6 @@ class Statistics {
   void note_written(std::span<const double> row);
   void note_written_later(std::span<const double> row);
   void add_contact(int joint, double time);
-  /// Any event of a joint, with its fields.
-  void note_event(int joint, int event, std::span<const double> fields) { largest_.note_event(joint, event, fields); }
 
   JointStatistics joint(int index) const;
   /// `index` into Model::force_elements.
@@ -139,6 +139,7 @@ class Statistics {
     }
   };
   void add_means(std::span<const double> row, double dt, bool first);
+  void add_inside(std::span<const double> row, double t);
   bool wants_middle() const;
   /// Calls `visit(mean, place)` for all, with the place of the value that it is of.
   template <class Self, class Visit>

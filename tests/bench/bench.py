@@ -1,6 +1,6 @@
 """How fast the program is: `./dev bench`.
 
-Without NAME everything is measured, in less than ten minutes on two cores; the tables are printed, and everything goes as
+Without NAME everything is measured, in twenty minutes on two cores; the tables are printed, and everything goes as
 JSON to the build folder. What is compared in one line is measured in turn, so that a busy machine disturbs both alike.
 """
 import argparse
@@ -75,6 +75,7 @@ def parser():
                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     words.add_argument("names", nargs="*", metavar="NAME", help="parts to measure (default: all)")
     words.add_argument("--quick", action="store_true", help="fewer runs, nothing large: to see that all of it works")
+    words.add_argument("--plain", action="store_true", help="the program as `./dev build` makes it; without, as `./dev tune` does")
     words.add_argument("--page", action="store_true", help="write the tables into docs/performance.md, too")
     words.add_argument("--vs", metavar="REV", help="time this tree and the revision REV of git in turn")
     words.add_argument("--series", action="store_true", help="print tests/bench/series.csv and draw it; measures nothing")
@@ -95,10 +96,10 @@ def parse(arguments):
     reader = parser()
     options, unknown = reader.parse_known_args(arguments)
     for word in unknown:
-        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--page", "--vs", "--series", "--release", "--help"])))
-    if options.page and (options.quick or options.vs):
-        reader.exit(2, "bench: --page takes neither --quick nor --vs: the page tells what was measured in full\n")
-    if options.series and (options.names or options.quick or options.page or options.vs):
+        reader.exit(2, "bench: unknown option '%s'%s\n" % (word, meant(word, ["--quick", "--plain", "--page", "--vs", "--series", "--release", "--help"])))
+    if options.page and (options.quick or options.plain or options.vs):
+        reader.exit(2, "bench: --page takes none of --quick, --plain and --vs: the page tells what was measured in full\n")
+    if options.series and (options.names or options.quick or options.plain or options.page or options.vs):
         reader.exit(2, "bench: --series takes no part and no other option but --release\n")
     if options.release and not options.series:
         reader.exit(2, "bench: --release goes with --series\n")
@@ -112,6 +113,7 @@ def parse(arguments):
 
 def facts(bench, options):
     return {"program": bench.ask("--version").strip(), "date": datetime.date.today().isoformat(), "quick": bench.quick,
+            "tuned": not (options.plain or options.quick or options.vs),
             "machine": {"cores": os.cpu_count(), "processor": platform.machine(), "system": platform.system()},
             "hand_written": bench.hand is not None}
 

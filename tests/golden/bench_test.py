@@ -67,7 +67,7 @@ class Bench(ProgramTest):
 
     def test_mistyped_words_get_the_nearest(self):
         for words, answer in ((["slider-crnk"], "did you mean 'slider-crank'?"), (["3-RRR"], "did you mean '3-rrr'?"), (["--quik"], "did you mean '--quick'?"),
-                              (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "neither --quick")):
+                              (["--vs", "HEAD", "growth"], "--vs compares"), (["--page", "--quick"], "none of --quick")):
             for more in ([], ["--only-words"]):  # as ./dev asks, before it builds anything
                 out, err = self.bench(*words, *more, code=2)
                 self.assertEqual("", out)

@@ -69,5 +69,24 @@ TEST(Statistics, MeanSquareOfShortPulsesIsThatOfTheirTable) {
   }
 }
 
+// A bar of 2 kg that turns evenly about its end: steps of half a turn. Its weight turns the motor by
+// 2 kg g 0.5 m cos(w t) and pulls at the pin by a force with the mean square (m g)^2 + (m w^2 r)^2.
+TEST(Statistics, MeansOfLongStepsAreThoseOfTheRowsInside) {
+  constexpr double w = 2.0 * M_PI, weight = 2.0 * 9.81, pull = 2.0 * w * w * 0.5;
+  for (const char* integrator : {"dopri5", "verner7"}) {
+    const ModelRun run(
+        "freeplay: 1\ngravity: [0, -9.81]\nbodies: {bar: {mass: 2, inertia: 0.2, com: [0.5, 0]}}\n"
+        "joints: {pin: {type: revolute, between: [ground, bar]}}\n"
+        "drivers: {motor: {joint: pin, kind: angle, value: \"2*pi*t\"}}\n"
+        "simulation: {end: 10 s, accuracy: 1 cm, output: {interval: 20 ms}, integrator: " +
+        std::string(integrator) + "}\n");
+    ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+    ASSERT_LT(run.outcome().steps, 200);
+    const double torque = weight * 0.5 / std::sqrt(2.0), force = std::hypot(weight, pull);
+    EXPECT_NEAR(run.statistics().driver(0).rms, torque, 1e-6 * torque) << integrator;
+    EXPECT_NEAR(run.statistics().joint(0).rms_force, force, 1e-6 * force) << integrator;
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::test

@@ -1,4 +1,6 @@
 // Springs and dampers that formulas give: closed forms, order, energy, and what they copy.
+#include <fmt/format.h>
+
 #include "run_model.h"
 
 namespace freeplay::test::formula_spring {
@@ -100,6 +102,36 @@ TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
       }
     }
   }
+}
+
+// In steps of 1 ms and about 1 mm: what lies between the ends of two steps alone, and what several of them show.
+TEST(FormulaSpring, StepsOfOneSizeThatGoOverAPartOfItAreDoubted) {
+  const auto doubted = [](const std::string& keys, const char* integrator = "bathe") {
+    const ModelRun run(sled(
+        keys, 0.0, 1.0, "end: 0.6, step: 1 ms, integrator: " + std::string(integrator) + ", output: {interval: 0.1}"));
+    EXPECT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+    const auto& doubts = run.outcome().doubts;
+    const auto doubt = std::ranges::find(doubts, "unresolved-input", &TrustReason::id);
+    return doubt == doubts.end() ? std::string() : doubt->message;
+  };
+  const auto bump = [](const char* place, const char* width) {
+    return fmt::format("spring: \"20 N/m*x + 200 N*exp(-((x - {} m)/({} m))^2)\"", place, width);
+  };
+  const auto peak = [](double width) {
+    return fmt::format("spring: {{interpolation: linear, points: [[0, 0], [{}, 5], [0.30023, 200], [{}, 5], [2, 40]]}}",
+                       0.30023 - width, 0.30023 + width);
+  };
+  for (const char* integrator : {"bathe", "newmark", "generalized-alpha"}) {
+    const std::string words = doubted(bump("0.30023", "2e-5"), integrator);
+    EXPECT_TRUE(words.starts_with("force 'tie' changes with the motion at t = 0.3")) << integrator << ": " << words;
+  }
+  EXPECT_NE(doubted(bump("0.30023", "2e-8")), "");
+  EXPECT_NE(doubted(peak(1e-4)), "");
+  EXPECT_NE(doubted("damper: \"0.1 N*s/m*v + 50 N*exp(-((v - 0.9801 m/s)/(1e-6 m/s))^2)\", stiffness: 2"), "");
+  EXPECT_EQ(doubted(bump("0.3", "2e-2")), "");
+  EXPECT_EQ(doubted(peak(5e-2)), "");
+  EXPECT_EQ(doubted(progressive), "");
+  EXPECT_EQ(doubted("spring: \"20 N/m*x\", damper: \"3 N*s^2/m^2*v*abs(v)\""), "");
 }
 
 // A staircase of thirty steps of 0.1 N, 10 mm apart: at x beyond them it has taken 0.1 (30 x - 0.01 (1 + ... + 30)) J.
