@@ -62,11 +62,12 @@ bool MotionLoads::follow(Fault& fault) {
   const double start = run_.accepted.t(), dt = run_.trial.t() - start;
   const DenseStep step(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial,
                        run_.e_trial->internal_rate);
+  const unsigned terms = joints_.any() ? term_event | term_coordinate : term_event;
   for (std::size_t k = 0; k <= MotionPieces::count; ++k) {
     const bool inside = k > 0 && k < MotionPieces::count;
     if (inside) {
       step.at(static_cast<double>(k) / static_cast<double>(MotionPieces::count), run_.between);
-      if (!run_.system.evaluate(point(run_.between), term_event, run_.e_between)) {
+      if (!run_.system.evaluate(point(run_.between), terms, run_.e_between)) {
         fault = run_.e_between->fault;
         return false;
       }

@@ -19,7 +19,7 @@ constexpr double refined = 1e-15;          // relative error that a refinement m
 constexpr double stagnation_rate = 0.3;    // of updates that gain nothing more where they are as small as ...
 constexpr double stagnation_size = 1e-12;  // ... this, relative
 constexpr double on_position = 1e-14;      // Phi that a projection may leave [model sizes] ...
-constexpr double near_position = 1e-12;    // ... and where it does not halve any more
+constexpr double near_position = 1e-12;    // ... and where it does not halve any more, or what its terms round to
 constexpr int quick_passes = 3;            // of a projection of velocities
 constexpr double small_change = 1e-5;      // of velocities, relative, that these may make
 constexpr unsigned rows = term_position | term_velocity, index_one = rows | term_acceleration | term_force;
@@ -38,6 +38,7 @@ IndexOneSolver::IndexOneSolver(StageEquations& equations, const ConvergenceParam
       e_(equations.evaluation()),
       dependent_(equations.dependent()),
       parameters_(parameters),
+      floor_(equations, parameters),
       matrix_(system_) {
   const int nv = system_.layout().nv(), nc = system_.layout().nc();
   factored_at_.resize(at(system_.layout().nq()));
@@ -319,6 +320,16 @@ bool IndexOneSolver::project_velocity(StateView& state) {
   return true;
 }
 
+// What no iteration makes smaller: after many turns angles round coarser than lengths.
+bool IndexOneSolver::is_rounded(double gap) {
+  if (gap < near_position * system_.size()) return true;
+  floor_.measure();
+  for (std::size_t r = 0; r < e_->phi.size(); ++r) {
+    if (!(std::abs(e_->phi[r]) <= floor_.of_phi()[r])) return false;
+  }
+  return true;
+}
+
 bool IndexOneSolver::project_position(StateView& state) {
   if (state.lambda.size == 0) return true;
   const double target = on_position * system_.size();
@@ -328,7 +339,7 @@ bool IndexOneSolver::project_position(StateView& state) {
     if (!equations_.evaluate(state, drifts_ ? rows : index_one)) return false;
     const double gap = largest(e_->phi);
     drifts_ = !(gap <= target);
-    if (gap <= target || (gap < near_position * system_.size() && gap > 0.5 * previous)) return true;
+    if (gap <= target || (gap > 0.5 * previous && is_rounded(gap))) return true;
     const bool slow = gap > parameters_.slow_rate * previous;
     if ((!has_factors() || slow) && !factor()) return false;
     previous = gap;

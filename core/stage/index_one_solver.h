@@ -15,6 +15,7 @@
 #include "stage/convergence_parameters.h"
 #include "stage/equations.h"
 #include "stage/flows.h"
+#include "stage/rounding_floor.h"
 #include "system/system.h"
 
 namespace freeplay {
@@ -51,6 +52,7 @@ class IndexOneSolver {
 
  private:
   void set_pattern();
+  bool is_rounded(double gap);
   bool factor();
   double factor_once();
   /// The factors are of the rows that are kept at present.
@@ -87,6 +89,7 @@ class IndexOneSolver {
   KeptEvaluation& e_;                // of equations_
   std::span<const char> dependent_;  // IndependentRows::dependent() of equations_
   const ConvergenceParameters parameters_;
+  RoundingFloor floor_;
   AccelerationMatrix matrix_;
   bool valid_ = false;               // its factors
   int pattern_choice_ = -1;          // IndependentRows::choice() of its pattern

@@ -14,6 +14,7 @@ RoundingFloor::RoundingFloor(StageEquations& equations, const ConvergenceParamet
   coordinate_.resize(at(layout.nv()));
   const Model& model = system_.model();
   for (const Gear& gear : model.gears) {
+    if (layout.rows(gear.joint).size == 0) continue;  // its teeth have play
     const std::size_t row = at(layout.rows(gear.joint).offset);
     coordinate_terms_.push_back({row, at(gear.first), std::abs(gear.ratio)});
     coordinate_terms_.push_back({row, at(gear.second), 1.0});

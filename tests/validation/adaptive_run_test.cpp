@@ -245,5 +245,45 @@ TEST(LawOutsideItsRange, IsToldOnceForEachJointWithNumbers) {
   EXPECT_NE(simulation.warnings()[0].find("delta = 5."), std::string::npos) << simulation.warnings()[0];
 }
 
+// A drum of 2 mm on a tub between springs, and one that a motor turns 12 000 rad far: such an angle rounds to 2e-12.
+TEST(AdaptiveRun, GoesOnAfterThousandsOfTurnsOnABodyThatMoves) {
+  for (const char* integrator : {"dopri5", "verner7", "bathe"}) {
+    const ModelRun run(
+        "freeplay: 1\nbodies: {tub: {mass: 0.2, inertia: 1e-6}, drum: {mass: 0.1, inertia: 1e-7, com: [0.2 mm, 0]}}\n"
+        "frames: {tub/hub: [2 mm, 0], ground/wall: [-10 mm, 0]}\n"
+        "joints: {rail: {type: prismatic, between: [ground, tub]}, pin: {type: revolute, between: [tub/hub, drum]}}\n"
+        "forces: {mount: {type: spring-damper, kind: linear, between: [ground/wall, tub], free_length: 10 mm, "
+        "stiffness: 500, "
+        "damping: 5}}\n"
+        "drivers: {motor: {joint: pin, kind: velocity, value: 6000}}\n"
+        "simulation: {end: 2, accuracy: 1 um, output: {interval: 0.5}, integrator: " +
+        std::string(integrator) + "}\n");
+    EXPECT_EQ(run.outcome().status, RunStatus::completed) << integrator << ": " << run.outcome().reason;
+    EXPECT_NEAR(run.last("joint.pin.angle"), 12000.0, 1e-8) << integrator;
+  }
+}
+
+// Teeth with play have no constraint equation, wherever it would stand.
+TEST(AdaptiveRun, TeethWithPlayMeshBetweenAnIdealPinAndALooseOne) {
+  for (const char* order : {"A, B", "B, A"}) {
+    for (const char* integrator : {"bathe", "dopri5"}) {
+      const ModelRun run(
+          "freeplay: 1\nbodies: {a: {mass: 0.5, inertia: 1e-4}, b: {mass: 1.5, inertia: 1.5e-3}}\n"
+          "frames: {ground/b: [60 mm, 0]}\njoints: {A: {type: revolute, between: [ground, a]}, "
+          "B: {type: revolute, between: [ground/b, b], clearance: {radial_clearance: 30 um, bearing_radius: 8 mm, "
+          "contact: {law: hertz, K: 3e9}}}, "
+          "mesh: {type: gear, of: [" +
+          std::string(order) + "], ratio: " + (order[0] == 'A' ? "-0.5" : "-2") +
+          ", clearance: {pitch_radius: " + (order[0] == 'A' ? "40 mm" : "20 mm") +
+          ", gap: 40 um, contact: {law: hertz, K: 1e9}}}}\n"
+          "drivers: {motor: {joint: A, kind: velocity, value: 20}}\nsimulation: {end: 50 ms, " +
+          (integrator[0] == 'b' ? "step: 10 us" : "accuracy: 1 um") + ", integrator: " + integrator + "}\n");
+      EXPECT_EQ(run.outcome().status, RunStatus::completed)
+          << order << ' ' << integrator << ": " << run.outcome().reason;
+      EXPECT_NEAR(run.last("body.b.angle"), -0.5, 2e-3) << order << ' ' << integrator;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace freeplay::test

@@ -104,6 +104,24 @@ TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
   }
 }
 
+// The angle of a dial counts over turns: 0.2 N m exp(-((x - a)/0.02)^2) takes 0.004 sqrt(pi) J of 0.5 0.01 10^2 J.
+TEST(FormulaSpring, ABumpOfATurnIsMetInFewSteps) {
+  for (const char* place : {"1", "7"}) {
+    for (const char* integrator : {"dopri5", "verner7", "bathe"}) {
+      const ModelRun run(fmt::format(
+          "freeplay: 1\nbodies: {{dial: {{mass: 1, inertia: 0.01}}}}\n"
+          "joints: {{pin: {{type: revolute, between: [ground, dial]}}}}\ninitial: {{speeds: {{pin: 10}}}}\n"
+          "forces: {{cog: {{type: spring-damper, kind: rotational, between: [ground, dial], "
+          "spring: \"0.2 N*m*exp(-((x - {})/0.02)^2)\"}}}}\nsimulation: {{end: 1, accuracy: 1e-5, integrator: {}}}\n",
+          place, integrator));
+      ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+      EXPECT_LT(run.outcome().steps, 300) << integrator;
+      EXPECT_NEAR(run.last("joint.pin.speed"), std::sqrt(100.0 - 0.8 * std::sqrt(std::numbers::pi)), 1e-4)
+          << integrator;
+    }
+  }
+}
+
 // In steps of 1 ms and about 1 mm: what lies between the ends of two steps alone, and what several of them show.
 TEST(FormulaSpring, StepsOfOneSizeThatGoOverAPartOfItAreDoubted) {
   const auto doubted = [](const std::string& keys, const char* integrator = "bathe") {
