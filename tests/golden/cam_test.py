@@ -50,6 +50,16 @@ simulation: {end: 0.25, output: {interval: 1 ms, channels: ["*", "body.*.ay"]}, 
             self.assertAlmostEqual(0.5 * (acceleration + 9.81) * -slope, columns["driver.motor.torque"][row], delta=1e-8)
         self.assertGreater(seen, 240)
 
+    def test_a_fine_ripple_of_a_cam_presses_by_its_curvature(self):
+        for waves, height in ((200, 50e-6), (2000, 0.5e-6), (10000, 0.02e-6)):
+            columns = self.run_model(self.TEXT.replace("30 rad/s", "1 rad/s").replace("end: 0.25", "end: 0.1")
+                                     .replace("mass: 0.5 kg", "pose: {position: [0, 40 mm]}, mass: 0.5 kg")
+                                     .replace("gravity: [0, -9.81]", "gravity: [0, 0]").replace("interval: 1 ms", "interval: 0.4 ms")
+                                     % ('"40 mm + %r m*sin(%d*x)"' % (height, waves), "accuracy: 1 nm"))
+            for row, t in enumerate(columns["time"]):
+                wave = -height * waves ** 2 * math.sin(waves * (math.pi / 2 - t))
+                self.assertAlmostEqual(wave, columns["body.follower.ay"][row], delta=1e-6 * height * waves ** 2)
+
     def test_periodic_points_make_a_closed_curve_through_them(self):
         angles = [i * 45 for i in range(9)]
         heights = [40, 41, 45, 50, 52, 50, 46, 42, 40]
