@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "axis_force.h"
+#include "formula_corners.h"
 #include "freeplay/kit/integral_from_zero.h"
 #include "freeplay/kit/planar_marker.h"
 
@@ -110,21 +111,9 @@ struct Spring {
  private:
   void store_spring() {
     const auto force = [formula = spring](double stretch) { return formula.at({&stretch, 1}); };
-    pulled = IntegralFromZero(force, smallest_stretch, largest_stretch, corners());
-    pressed = IntegralFromZero(force, smallest_stretch, -largest_stretch, corners());
-  }
-  /// Where what decides a switch is a line through zero, as at points of a table and in abs(x - 0.1).
-  std::vector<double> corners() const {
-    const auto count = static_cast<std::size_t>(spring.switches());
-    std::vector<double> at_zero(count), at_one(count), out;
-    const double zero = 0.0, one = 1.0;
-    spring.decide({&zero, 1}, {at_zero.data(), count});
-    spring.decide({&one, 1}, {at_one.data(), count});
-    for (std::size_t i = 0; i < count; ++i) {
-      const double corner = at_zero[i] / (at_zero[i] - at_one[i]);
-      if (std::isfinite(corner)) out.push_back(corner);
-    }
-    return out;
+    const std::vector<double> corners = FormulaCorners::of(spring, smallest_stretch, largest_stretch);
+    pulled = IntegralFromZero(force, smallest_stretch, largest_stretch, corners);
+    pressed = IntegralFromZero(force, smallest_stretch, -largest_stretch, corners);
   }
   static constexpr double smallest_stretch = 0x1p-20, largest_stretch = 0x1p10;  // [m or rad]
   IntegralFromZero pulled, pressed;

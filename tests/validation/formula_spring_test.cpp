@@ -81,6 +81,18 @@ TEST(FormulaSpring, StoresWhatActsInASmallPartOfItsWay) {
   EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-4);
 }
 
+// Tents: the place of their top is where a difference passes zero, the ends of their sides are not.
+TEST(FormulaSpring, StoresTheAreaBelowATentOfAnyWidth) {
+  for (const double width : {0.3, 0.1, 1e-2, 1e-4, 1e-6}) {
+    const double top = 0.2 / width;
+    const ModelRun run(sled(fmt::format("spring: \"max(0 N, {} N - {} N/m*abs(x - 0.4237 m))\"", top, top / width), 0.0,
+                            1.0, "end: 1, accuracy: 1e-7, output: {interval: 0.1}"));
+    ASSERT_EQ(run.outcome().exit_code, 0) << run.outcome().reason;
+    EXPECT_NEAR(run.last("energy.potential"), 0.2, 1e-10) << width;
+    EXPECT_NEAR(run.last("joint.rail.speed"), std::sqrt(0.8), 1e-6) << width;
+  }
+}
+
 // The same as a bump that is smooth, or has corners, along steps that are as long as the motion beside it lets them be.
 TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
   for (const double width : {1e-2, 1e-3, 1e-4, 1e-5}) {
