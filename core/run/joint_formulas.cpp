@@ -294,6 +294,7 @@ double JointFormulas::hidden(const Course& course) {
   return std::max({course.beyond, hidden_part * (course.high - course.low), no_difference * largest});
 }
 
+// At any rates: the length of the span says nothing.
 Interval JointFormulas::values(const Course& course, std::span<const Interval> ranges) {
   std::array<IntervalJet, Formula::most_variables> jets;
   std::array<Jet, Formula::most_variables> middles;
@@ -302,7 +303,8 @@ Interval JointFormulas::values(const Course& course, std::span<const Interval> r
     middles[k] = {0.5 * (ranges[k].low + ranges[k].high), std::nan(""), std::nan("")};
   }
   FormulaBounds::Bounds bounds{unknown_jet(), {}};
-  course.formula->bound({.ranges = {jets.data(), ranges.size()}, .at_middle = {middles.data(), ranges.size()}}, bounds);
+  course.formula->bound(
+      {.half = 1.0, .ranges = {jets.data(), ranges.size()}, .at_middle = {middles.data(), ranges.size()}}, bounds);
   return bounds.range.value;
 }
 

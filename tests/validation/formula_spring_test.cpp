@@ -156,6 +156,8 @@ TEST(FormulaSpring, StepsOfOneSizeThatGoOverAPartOfItAreDoubted) {
     EXPECT_TRUE(words.starts_with("force 'tie' changes with the motion at t = 0.3")) << integrator << ": " << words;
   }
   EXPECT_NE(doubted(bump("0.30023", "2e-8")), "");
+  // Flat where it is not.
+  EXPECT_NE(doubted("spring: \"20 N*(smooth(x, 0.3002, 0.3004) - smooth(x, 0.3004, 0.3006))\""), "");
   EXPECT_NE(doubted(peak(1e-4)), "");
   EXPECT_NE(doubted("damper: \"0.1 N*s/m*v + 50 N*exp(-((v - 0.9801 m/s)/(1e-6 m/s))^2)\", stiffness: 2"), "");
   EXPECT_EQ(doubted(bump("0.3", "2e-2")), "");
