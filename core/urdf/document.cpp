@@ -13,6 +13,12 @@
 namespace freeplay::urdf {
 namespace {
 
+/// URDF asks for limits of every slide: those that say none are as large as this [m, rad, N or N m].
+constexpr double no_limit = 1000.0;
+bool limits_anything(const Limits& limits) {
+  return limits.lower > -no_limit || limits.upper < no_limit || limits.effort < no_limit;
+}
+
 std::optional<Sections> read_sections(XmlElement& root, const Options& options, Nodes& nodes, Messages& messages) {
   if (std::string_view(root.Name()) != "robot") {
     messages.error(name_spot(root), "bad-urdf", fmt::format("the root element must be 'robot', not '{}'", root.Name()));
@@ -22,7 +28,8 @@ std::optional<Sections> read_sections(XmlElement& root, const Options& options, 
   Robot robot = read_robot(root, model, messages);
   build_tree(robot, options, messages);
   for (const Joint& joint : robot.joints) {
-    if (joint.limits && !options.stops) messages.ignore("limits of joint", joint.name);
+    if (joint.limits && limits_anything(*joint.limits) && !options.stops)
+      messages.ignore("limits of joint", joint.name);
   }
   Names names(robot, messages);
   if (!messages.failed()) model.report_refusal(messages);

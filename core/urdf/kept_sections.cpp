@@ -1,5 +1,7 @@
 #include "urdf/kept_sections.h"
 
+#include <algorithm>
+
 #include "base/expression.h"
 
 namespace freeplay {
@@ -36,6 +38,12 @@ void collect_targets(const Node& node, std::set<std::string>& names) {
 }
 
 }  // namespace
+
+bool mentions(const Node& kept, const std::string& frame) {
+  const auto in_entry = [&](const Node::Entry& entry) { return mentions(*entry.value, frame); };
+  return kept.text.find(frame) != std::string::npos || std::ranges::any_of(kept.entries, in_entry) ||
+         std::ranges::any_of(kept.items, [&](const Node* item) { return mentions(*item, frame); });
+}
 
 void KeptSections::put(Node& owner, const char* key, const Node& value) {
   Node& name = target_.add(Node::Kind::scalar, 1, 1);

@@ -1,4 +1,4 @@
-// UrdfKeptSections: presets and parameters of a model that its side-car still needs.
+// UrdfKeptSections: what of a model its side-car still needs: presets, parameters, frames.
 #pragma once
 
 #include <functional>
@@ -8,6 +8,9 @@
 #include "format/document.h"
 
 namespace freeplay {
+
+/// Whether a word or a formula in what is kept of a model names a frame, "body/frame".
+bool mentions(const Node& kept, const std::string& frame);
 
 /// Adds to `root`, and to `content`, which holds what the side-car says by now, the entries of a section of the source
 /// that this content names, and those that these name in turn.

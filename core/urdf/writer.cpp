@@ -348,7 +348,7 @@ class UrdfWriter {
     for (auto one = std::ranges::lower_bound(model_.frames, stem, {}, &Marker::name);
          one != model_.frames.end() && one->name.starts_with(stem); ++one) {
       const std::string name = one->name.substr(stem.size());
-      if (name == "origin" || name == "com" || is_brought(body, name)) continue;
+      if (name == "origin" || name == "com" || is_brought(body, name) || is_spent(one->name)) continue;
       Node& position = point(one->position[0] - moved.x, one->position[1] - moved.y);
       if (one->angle == 0.0) {
         put(frames, name, position);
@@ -370,6 +370,21 @@ class UrdfWriter {
       return first(model_.joints[j]).body == body || second(model_.joints[j]).body == body;
     }
     return false;
+  }
+
+  /// Whether joints of the tree alone used a frame: what they do there the URDF says.
+  bool is_spent(const std::string& frame) const {
+    bool used = false;
+    for (std::size_t j = 0; j < model_.joints.size(); ++j) {
+      const JointElement& joint = model_.joints[j];
+      if (first(joint).name != frame && second(joint).name != frame) continue;
+      if (!in_tree_[j]) return false;
+      used = true;
+    }
+    return used && std::ranges::none_of(source_->entries, [&](const Node::Entry& entry) {
+             const std::string& section = entry.key->text;
+             return section != "bodies" && section != "frames" && section != "joints" && mentions(*entry.value, frame);
+           });
   }
 
   const Node& joint_section() {

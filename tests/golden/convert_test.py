@@ -52,6 +52,16 @@ class Convert(ProgramTest):
                 self.assertNotIn("urdf", self.read(name + "-back.yaml"))
                 self.assert_same(mechanism(name), name + "-back.yaml", "--end", end)
 
+    def test_what_it_writes_has_no_warning_that_the_model_has_not(self):
+        for name in ("four-bar", "slider-crank", "3-rrr", "gallery/toggle-press", "gallery/shaper"):
+            model = mechanism(name)
+            self.freeplay("convert", model, "r.urdf", "--force")
+            of_model = [w["code"] for w in self.verdict(model)["messages"]]
+            self.assertEqual(of_model, [w["code"] for w in self.verdict("r.urdf.sidecar.yaml")["messages"]], name)
+        self.write("kept.yaml", self.read(mechanism("four-bar")).replace("step: 1 ms", "step: 1 ms, output: {frames: [crank/tip]}"))
+        self.freeplay("convert", "kept.yaml", "r.urdf", "--force")
+        self.assertIn("frame.crank/tip.x", self.results("r.urdf.sidecar.yaml"))
+
     def test_instances_are_written_out_under_names_of_their_own(self):
         for name, end in (("3-rrr", "100 us"), ("4-rrr", "100 us"), ("validation/a02-chain", "20 ms")):
             with self.subTest(name):
