@@ -262,12 +262,21 @@ class FreeMotions {
     return one;
   }
 
+  /// Whether a joint, by its own rows, holds tilts and lets its bodies move in two directions, as on a table.
+  bool glides(int j, const MatrixXd& rows) const {
+    const Slice own = closed_.layout().rows(j);
+    if (model_.space == Space::planar || own.size < 3) return false;
+    const JointElement& joint = model_.joints[at(j)];
+    const BodyId second = body_of(joint.marker_b), body = second == ground ? body_of(joint.marker_a) : second;
+    return null_space(rows.block(own.offset, closed_.layout().body_velocities() * body, own.size, 3)).cols() >= 2;
+  }
+
   /// Bodies that move although all that starts are given for is held. A start of a joint and a speed are meant; so is
-  /// what springs alone hold, on a slide or free, or a spring about an axis, as many springs as there are freedoms
-  /// where no driver moves what joints tie together, and the pose of a body. As poses are also guesses for loops, a
-  /// position without an angle of a body on a pin is none, and that of a body which turns about its own centre of mass
-  /// unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any pose of bodies that
-  /// may_miss_a_joint().
+  /// what springs alone hold, on a slide, a table or free, or a spring about an axis, as many springs as there are
+  /// freedoms where no driver moves what joints tie together, and the pose of a body. As poses are also guesses for
+  /// loops, a position without an angle of a body on a pin is none, and that of a body which turns about its own centre
+  /// of mass unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any pose of bodies
+  /// that may_miss_a_joint().
   template <class IsMoving>
   std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
@@ -280,7 +289,7 @@ class FreeMotions {
       if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
         given = stacked(given, coordinate_rate(j));
       }
-      const bool slides = joint.ideal_layout().coordinate == Coordinate::position;
+      const bool slides = joint.ideal_layout().coordinate == Coordinate::position || glides(j, held);
       const bool driven = std::ranges::count(model_.drivers, j, &Driver::joint) > 0;
       if (closed_.layout().rows(j).size == 0 || slides || driven) continue;
       for (const int marker : {joint.marker_a, joint.marker_b}) {

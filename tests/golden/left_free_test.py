@@ -40,6 +40,26 @@ forces:
 simulation: {end: 2 s, accuracy: 10 um}
 """
 
+# A rotor out of balance on a plate that slides on a table between four springs.
+SHAKER = """freeplay: 1
+space: spatial
+gravity: [0, 0, -9.81]
+bodies:
+  plate: {mass: 3, inertia: [0.02, 0.02, 0.04], frames: {e: [0.2, 0, 0], w: [-0.2, 0, 0], n: [0.1, 0.2, 0], s: [0.1, -0.2, 0]}}
+  rotor: {mass: 0.4, inertia: [1e-4, 1e-4, 2e-4], com: [8 mm, 0, 0]}
+frames: {ground/e: [0.3, 0.1, 0], ground/w: [-0.3, 0.1, 0], ground/n: [0.1, 0.3, 0], ground/s: [0.1, -0.3, 0]}
+joints:
+  table: {type: planar, between: [ground, plate]}
+  axle: {type: revolute, between: [plate, rotor]}
+drivers: {motor: {joint: axle, kind: velocity, value: 100 rad/s}}
+forces:
+  e: {type: spring-damper, between: [ground/e, plate/e], stiffness: 2 kN/m, free_length: 0.1}
+  w: {type: spring-damper, between: [ground/w, plate/w], stiffness: 2 kN/m, free_length: 0.1}
+  n: {type: spring-damper, between: [ground/n, plate/n], stiffness: 2 kN/m, free_length: 0.1}
+  s: {type: spring-damper, between: [ground/s, plate/s], stiffness: 2 kN/m, free_length: 0.1}
+simulation: {end: 1, accuracy: 1 um}
+"""
+
 
 class LeftFree(ProgramTest):
     def doubts(self, text, **changes):
@@ -53,6 +73,11 @@ class LeftFree(ProgramTest):
         for place in ("0, 1", "2, 1.535898384862245", "-3.4, 2.892869249429452"):
             with self.subTest(place):
                 self.assertEqual([], self.doubts(CRANE % place))
+
+    def test_what_springs_hold_on_a_table_starts_where_it_is_given(self):
+        self.assertEqual([], self.doubts(SHAKER))
+        pinned = self.doubts(SHAKER, **{"type: planar": "type: spherical"})
+        self.assertIn("no start is given for 'plate', 'rotor'", pinned[0])
 
     def test_what_stands_beside_or_on_a_bar_misses_its_guide(self):
         """The coupler of a crank is such a bar, too, and so is a body whose place is not given."""
