@@ -12,9 +12,9 @@ namespace freeplay::curves {
 /// A height over x of the marker, or a distance from its origin over the angle.
 enum class CurveForm { cartesian, polar };
 
-/// Value, slope and bend of a curve. The bend is the difference of exact slopes at equal distances, short ones, to sixth order:
-/// exact for polynomials up to the seventh degree. Where the formula changes its form on one side, as from an arc to a
-/// line, they stand on the other.
+/// Value, slope and bend of a curve. The bend is the difference of exact slopes at equal distances, short ones, to
+/// sixth order: exact for polynomials up to the seventh degree. Where the formula changes its form on one side, as from
+/// an arc to a line, they stand on the other.
 class Curve {
  public:
   Curve(const Formula& formula, CurveForm form)
