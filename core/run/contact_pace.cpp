@@ -1,7 +1,10 @@
 #include "run/contact_pace.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -10,6 +13,40 @@
 #include "system/joint_derivatives.h"
 
 namespace freeplay {
+namespace {
+
+constexpr double nudge = 1e-7;  // of a velocity, for a slope [m/s, rad/s]
+
+/// What the normal force alone damps, of the whole tr(W C). With its slope g by the velocity of b, which is its damping
+/// times the unit wrench by which the surfaces press, that is g^T W g by the part of g that is a force by a speed.
+double pressing_damping(const JointRef& joint, const JointLayout& layout, JointInput in, const double* mobility) {
+  constexpr double all_of_it = std::numeric_limits<double>::infinity();  // nothing is known of friction
+  std::size_t normal = 0;
+  while (normal < layout.channels.size && channel_role(layout, normal) != ChannelRole::normal_force) ++normal;
+  if (normal == layout.channels.size) return all_of_it;
+  const MarkerKinematics second = *in.b;
+  std::vector<double> channels(layout.channels.size, 0.0);
+  std::array<double, 6> slope{};
+  for (std::size_t k = 0; k < slope.size(); ++k) {
+    for (const double sense : {1.0, -1.0}) {
+      MarkerKinematics moved = second;
+      (k < 3 ? moved.velocity[k] : moved.angular_velocity[k - 3]) += sense * nudge;
+      in.b = &moved;
+      Message message;
+      if (!joint.observe(in, {}, {channels.data(), channels.size()}, message)) return all_of_it;
+      slope[k] += sense * channels[normal] / (2.0 * nudge);
+    }
+  }
+  double sum = 0.0;
+  for (std::size_t r = 0; r < slope.size(); ++r) {
+    for (std::size_t c = 0; c < slope.size(); ++c) sum += slope[r] * mobility[slope.size() * r + c] * slope[c];
+  }
+  const double force = std::hypot(slope[0], slope[1], slope[2]);
+  if (force > 0.0) return sum / force;
+  return sum > 0.0 ? all_of_it : 0.0;  // a moment alone, as of a stop of turns
+}
+
+}  // namespace
 
 ContactPaces::ContactPaces(RunContext& run) : run_(run) {
   const std::span<const ForceBlock> blocks = run.system.forces().blocks();
@@ -64,6 +101,7 @@ bool ContactPaces::look(OfJoint& contact, ContactPace& pace) {
   }
   pace.joint = contact.joint;
   pace.swing = std::sqrt(std::max(stiffness, 0.0));
+  pace.slides = pressing_damping(joints.handle(contact.joint), layout, in, whole) < 0.5 * pace.damping;
   return true;
 }
 
@@ -78,16 +116,18 @@ ContactPace ContactPaces::fastest() {
 }
 
 std::string ContactPaces::words(const ContactPace& pace) const {
+  const ComponentKind kind = pace.slides ? ComponentKind::friction_law : ComponentKind::contact_law;
   const ParameterBlock* block = run_.model.joints[at(pace.joint)].parameters.get();
   std::string law;
   if (block != nullptr) {
     for (const auto& [key, value] : block->values) {
-      if (!value.law || value.law->component->kind != ComponentKind::contact_law) continue;
-      law = fmt::format("law '{}', ", value.law->component->description.name);
+      if (!value.law || value.law->component->kind != kind) continue;
+      law = fmt::format("law '{}'", value.law->component->description.name);
     }
   }
+  if (pace.slides) return law.empty() ? "its friction" : fmt::format("its friction ({})", law);
   const double speed = std::ranges::find(contacts_, pace.joint, &OfJoint::joint)->speed;
-  return fmt::format("its contact ({}{})", law,
+  return fmt::format("its contact ({}{}{})", law, law.empty() ? "" : ", ",
                      speed < 0.0 ? "on from the start" : fmt::format("begun at {:.2g} m/s", speed));
 }
 

@@ -15,6 +15,7 @@ struct ContactPace {
   int joint = -1;
   double damping = 0.0;  ///< m/c is 1/damping [1/s]
   double swing = 0.0;    ///< circular frequency without damping [rad/s]
+  bool slides = false;   ///< most of the damping is across the direction in which the surfaces press: friction
 };
 
 /// Looks at the joints that declare contacts, and knows at which speed each began last.
@@ -27,7 +28,7 @@ class ContactPaces {
   void note_begins();
   /// The joint in contact that is damped fastest; `joint` is -1 without one.
   [[gnu::cold]] ContactPace fastest();
-  /// "its contact (law 'NAME', begun at ... m/s)".
+  /// "its contact (law 'NAME', begun at ... m/s)", or "its friction (law 'NAME')".
   [[gnu::cold]] std::string words(const ContactPace& pace) const;
 
   template <class Self, class Archive>

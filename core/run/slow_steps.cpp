@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/play_rows.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -79,19 +80,28 @@ SlowSteps::Blame SlowSteps::blame() const {
 
 // Steps as long as the time constant m/c of a contact are as long as an explicit method can take. Where they are far
 // shorter than what the contact does as a spring, it is the damping alone that asks for them.
-void SlowSteps::judge_contacts(double all) {
+void SlowSteps::judge_contacts(double mean, double all) {
   if (!contacts_.any() || run_.integrator_layout.explicit_stages == 0) return;
   const double step = (run_.accepted.t() - watched_from_) / static_cast<double>(watched - 1);
   const ContactPace pace = contacts_.fastest();
-  const double fineness = M_PI / (pace.swing * step), limit = too_fine * run_.settings.per_contact;
-  if (!(pace.damping * step > 1.0 && fineness > limit)) return;
-  element_ = name_of(at(pace.joint)), value_ = fineness, limit_ = limit;
+  const double turn = pace.swing * step, limit = too_fine * run_.settings.per_contact;
+  if (!(pace.damping * step > 1.0 && M_PI > limit * turn)) return;
+  element_ = name_of(at(pace.joint)), value_ = turn > 0.0 ? M_PI / turn : std::nan(""), limit_ = limit;
+  const std::string times = fmt::format("{:.2g} times as much as stops", 0.5 * pace.damping / pace.swing);
+  // What brings sliding to rest is no spring, and one that does not press yet has nothing to be compared with.
+  const std::string much =
+      pace.slides ? "brings sliding to rest"
+                  : "is damped " + (turn > 0.0 ? times : "more than enough to stop") + " it from swinging,";
   sentence_ = fmt::format(
-      "steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}; {} lets them be no longer: {} is "
-      "damped {:.2g} times as much as stops it from swinging, with a time constant of {:.2g} s; start it in contact "
-      "under its load ('initial: loaded'), take a law or a restitution that damps less, or steps of one size",
-      step, run_.accepted.t(), all, element_, contacts_.words(pace), 0.5 * pace.damping / pace.swing,
-      1.0 / pace.damping);
+      "steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}; {} lets the last of them, of "
+      "{:.2g} s, be no longer: {} {} with a time constant of {:.2g} s; {}, or steps of one size",
+      mean, run_.accepted.t(), all, element_, step, contacts_.words(pace), much, 1.0 / pace.damping, remedy_for(pace));
+}
+
+const char* SlowSteps::remedy_for(const ContactPace& pace) const {
+  if (pace.slides) return "take a friction that sets in over a larger speed, as by a larger 'vs'";
+  if (starts_by_its_load(run_.model.joints[at(pace.joint)])) return "take a law or a restitution that damps less";
+  return "start it in contact under its load ('initial: loaded'), take a law or a restitution that damps less";
 }
 
 bool SlowSteps::judge() {
@@ -99,7 +109,7 @@ bool SlowSteps::judge() {
   const double all = static_cast<double>(run_.outcome.steps) + (run_.settings.end - t) / step;
   const bool chattering = std::ranges::any_of(changes_, [](double change) { return change > chatters; });
   bool going = true;
-  if (sentence_.empty() && !(all > endless)) judge_contacts(all);
+  if (sentence_.empty() && !(all > endless)) judge_contacts(step, all);
   if (sentence_.empty() && (all > many || chattering)) {
     Blame blame = this->blame();
     sentence_ = fmt::format("steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}{}{}", step, t,

@@ -45,7 +45,8 @@ class SlowSteps {
 
   // By size: they run in 16 of 100 000 steps.
   [[gnu::cold]] void watch();
-  [[gnu::cold]] void judge_contacts(double all);
+  [[gnu::cold]] void judge_contacts(double mean, double all);
+  const char* remedy_for(const ContactPace& pace) const;
   [[gnu::cold]] bool judge();
   struct Blame {
     std::string element, words;

@@ -1,5 +1,7 @@
 """Steps so short that a run would not end are told, with what to look at."""
 import json
+import math
+import re
 import unittest
 
 from program import ProgramTest
@@ -30,6 +32,13 @@ joints:
       contact: {law: flores, K: 1e8, restitution: 0.001}
 simulation: {end: 0.1 s, accuracy: 1 um}
 """
+
+LIFT = "forces: {lift: {type: force, at: pin, value: [0, '9.82 N*(1 - smooth(t, 1 ms, 2 ms))']}}\n"
+
+# A pin that comes to rest in its hole, by a friction that sets in over 1 um/s.
+RUB = DROP.replace("simulation:", "initial: {speeds: {hole: 0.01 rad/s}}\nsimulation:").replace("initial: {eccentricity: [0 mm, -0.1 mm]}", "initial: loaded").replace(
+    "contact: {law: flores, K: 1e8, restitution: 0.001}",
+    "contact: {law: hertz, K: 1e8}\n      friction: {law: coulomb-tanh, mu: 1, vs: 1 um/s}")
 
 # A load that turns with the speed of the plunger, which it brings to rest and holds there.
 PUMP = """freeplay: 1
@@ -69,8 +78,8 @@ class ShortSteps(ProgramTest):
     def test_a_contact_that_damps_too_much_for_longer_steps_is_named(self):
         self.write("m.yaml", DROP)
         out, err = self.freeplay("run", "m.yaml", "--out", "r")
-        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' lets them "
-                              r"be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
+        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' lets the last "
+                              r"of them, of \S+ s, be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
         reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
         self.assertIn(("short-steps", "joint 'hole'"), [(r["id"], r["element"]) for r in reasons])
         self.assertIn("trust: doubtful", out)
@@ -86,6 +95,31 @@ class ShortSteps(ProgramTest):
         self.write("m.yaml", DROP.replace("initial: {eccentricity: [0 mm, -0.1 mm]}", "initial: loaded"))
         out, err = self.freeplay("run", "m.yaml", "--out", "r")
         self.assertNotIn("no longer", out + err)
+
+    def test_lengths_and_counts_of_steps_agree(self):
+        self.write("m.yaml", DROP)
+        err = self.freeplay("run", "m.yaml", "--out", "r")[1]
+        length, at, whole = map(float, re.search(r"steps of (\S+) s at t = (\S+) s, of which the whole run would take (\S+);", err).groups())
+        steps = 100000 * math.ceil(at / (100000 * length))  # of whole blocks
+        self.assertAlmostEqual(whole, steps + (0.1 - at) / length, delta=0.1 * whole)
+
+    def test_a_load_at_the_start_is_no_remedy_where_it_is_one_already(self):
+        self.write("m.yaml", DROP.replace("initial: {eccentricity: [0 mm, -0.1 mm]}", "initial: loaded").replace(
+            "0.001}", "1e-9}").replace("end: 0.1 s", "end: 35 ms") + LIFT)
+        err = self.freeplay("run", "m.yaml", "--out", "r")[1]
+        self.assertRegex(err, r"its contact \(law 'flores', begun at \S+ m/s\) is damped")
+        self.assertNotIn("initial: loaded", err)
+
+    def test_a_friction_that_makes_steps_short_is_named(self):
+        """A law of contact without damping: what is fast is the friction, mu N/(m vs)."""
+        self.write("m.yaml", RUB)
+        err = self.freeplay("run", "m.yaml", "--out", "r")[1]
+        said = re.search(r"joint 'hole' lets the last of them, of (\S+) s, be no longer: its friction \(law 'coulomb-tanh'\) brings "
+                         r"sliding to rest with a time constant of (\S+) s; .*'vs'", err)
+        self.assertTrue(said, err)
+        self.assertNotIn("initial: loaded", err)
+        # (1/m + R^2/i) mu m g/vs with R = 9.9 mm, at rest
+        self.assertAlmostEqual(1e-6 / (9.81 * (1 + 9.9e-3 ** 2 / 1e-3)), float(said[2]), delta=2e-9)
 
 
 if __name__ == "__main__":

@@ -193,7 +193,7 @@ CASES = {
         (0, driven("value: t", "value: exp(-((t - 0.05)/1e-4)^2)"), RUN),
     "... '...': it changes at t = ... s for some ... s, less than a millionth of the run, which steps may go over; ...":
         (0, PULSE.replace("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", "1/(1 + ((t - 0.7)/1e-8)^2)").replace("step: 5 ms", "accuracy: 1 um"), RUN),
-    "steps of ... s at t = ... s, of which the whole run would take ...; joint '...' lets them be no longer: its contact (...) is damped ...":
+    "steps of ... s at t = ... s, of which the whole run would take ...; joint '...' lets the last of them, of ... s, be no longer: its ... is damped ...":
         (0, TOUCHING, RUN),
     "--verify: THE RUNS DISAGREE: ...": (7, PULSE, RUN + ["--verify"]),
     "--verify: the second run was given up at ... s after ... steps": (0, STIFF, RUN + ["--verify"]),
