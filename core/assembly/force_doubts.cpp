@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/given_damping.h"
 #include "base/index.h"
 #include "model/force_element.h"
 
@@ -142,7 +143,7 @@ class ForceDoubts {
 
   /// Against that which just keeps the heavier of both bodies from swinging on the spring.
   void judge_damping(const JointElement& joint) const {
-    const double damping = number(joint, "damping"), stiffness = number(joint, "stiffness");
+    const double damping = given_damping(joint), stiffness = number(joint, "stiffness");
     double mass = 0.0;
     for (const int marker : {joint.marker_a, joint.marker_b}) {
       if (body_of(marker) != ground) mass = std::max(mass, model_.bodies[at(body_of(marker))].mass);

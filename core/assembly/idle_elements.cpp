@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/given_damping.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "base/text.h"
@@ -190,8 +191,7 @@ class Elements {
 
   void judge_damping(int j) {
     const JointElement& element = model_.joints[at(j)];
-    const auto found = element.parameters->values.find("damping");
-    const double damping = found == element.parameters->values.end() ? 0.0 : found->second.number;
+    const double damping = given_damping(element);
     if (!(damping > 0.0) || is_doubted(element)) return;
     const std::optional<MatrixXd> rate = rate_of(j);
     if (!rate) return;

@@ -221,3 +221,43 @@ joints: {pivot: {type: revolute, between: [ground, arm]}}
 initial: {joints: {pivot: 0.1 rad}}
 simulation: {end: 1 s, step: 1 ms}
 """
+# A tappet on a disc cam, and a roller on an arm against one.
+CAM = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  cam: {mass: 1.2 kg, inertia: 1e-3}
+  tappet: {mass: 80 g, inertia: 2e-5, pose: {position: [0, 25 mm]}, frames: {v: {angle: 90 deg}}}
+frames: {ground/v: {angle: 90 deg}}
+joints:
+  axle: {type: revolute, between: [ground, cam]}
+  guide: {type: prismatic, between: [ground/v, tappet/v]}
+  touch: {type: point-on-curve, form: polar, between: [cam, tappet],
+          curve: "25 mm + 8 mm*(smooth(x, 60 deg, 120 deg) - smooth(x, 180 deg, 240 deg))"}
+drivers: {m: {joint: axle, kind: velocity, value: 300 rpm}}
+initial: {joints: {axle: 0}}
+simulation: {end: 0.4 s, accuracy: 1 um}
+"""
+PLATE = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  arm: {mass: 0.5 kg, inertia: 1e-3, com: [50 mm, 0], frames: {r: [100 mm, 0]}, pose: {angle: 0}}
+  cam: {mass: 1 kg, inertia: 1e-3}
+frames: {ground/c: [100 mm, -35 mm]}
+joints:
+  A: {type: revolute, between: [ground, arm]}
+  C: {type: revolute, between: [ground/c, cam]}
+drivers: {m: {joint: C, kind: velocity, value: 20 rad/s}}
+initial: {joints: {A: 0, C: 0}}
+forces:
+  t: {type: curve-contact, between: [cam, arm/r], second: 8 mm, contact: {law: hu-guo, K: 1e9, restitution: 0.5},
+      first: "20 mm + 8 mm*(smooth(x, 100 deg, 180 deg) - smooth(x, 180 deg, 260 deg))"}
+simulation: {end: 0.5 s, accuracy: 1 um}
+"""
+# A contact that damps by its law alone, and a growth of the effort of a stop by the speed, 1 s/m where nothing is said.
+STOP = """freeplay: 1
+bodies: {pin: {mass: 1e-8 kg, inertia: 1e-15 kg*m^2}}
+joints: {g: {type: prismatic, between: [ground, pin]}}
+forces: {st: {type: joint-stop, between: [ground, pin], lower: -1 mm, upper: 1 mm, contact: {law: hertz, K: 1e9}}}
+initial: {speeds: {g: 0.5 m/s}}
+simulation: {end: 20 ms, accuracy: 0.1 um}
+"""

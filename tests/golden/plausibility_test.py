@@ -5,8 +5,8 @@ import os
 import unittest
 
 from doubtful_models import (
-    BELT, BOB, BOX, CART, COUPLED, CRANK, ECCENTRIC, FOOT, GUIDED, HAMMER, HANGER, HOURS, RACK, ROD, ROPE,
-    SATELLITE, SHAKER, TEETH, TRAIN, WATCH)
+    BELT, BOB, BOX, CAM, CART, COUPLED, CRANK, ECCENTRIC, FOOT, GUIDED, HAMMER, HANGER, HOURS, PLATE, RACK, ROD, ROPE,
+    SATELLITE, SHAKER, STOP, TEETH, TRAIN, WATCH)
 from program import ROOT, ProgramTest
 
 DRIVEN = "kind: velocity, value: 100}}\ninitial: {joints: {main: 1}}"
@@ -209,6 +209,9 @@ simulation: {end: 0.1, step: 1e-4}
 """
 # What looks like these but is meant: no warning at all.
 SOUND = [
+    (STOP, "", ""),
+    (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m"),
+    (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m, damping: 100"),
     (HANGING, "", ""),
     (HANGING, "kind: angle, value: 0.3*sin(20*t)", "kind: torque, value: 1"),
 
