@@ -8,7 +8,7 @@
 namespace freeplay {
 
 // Bodies are as far apart as their markers let them be.
-double model_size(const Model& model) {
+double model_length(const Model& model) {
   const auto length = [](const Vector3& v) { return std::hypot(std::hypot(v[0], v[1]), v[2]); };
   double size = 0.0;
   for (const Marker& marker : model.markers) {
@@ -22,7 +22,12 @@ double model_size(const Model& model) {
   for (const Body& body : model.bodies) {
     if (body.position) size = std::max(size, length(*body.position));
   }
-  return size > 0.0 ? size : 1.0;
+  return size;
+}
+
+double model_size(const Model& model) {
+  const double length = model_length(model);
+  return length > 0.0 ? length : 1.0;
 }
 
 WholeMass whole_mass(const Model& model) {

@@ -6,7 +6,9 @@
 namespace freeplay {
 
 /// Largest distance of a frame that something stands on from its body's centre of mass, or of ground's frames and the
-/// given poses from the origin [m]; 1 where there is none.
+/// given poses from the origin [m]; 0 where there is none.
+double model_length(const Model& model);
+/// The same, but 1 where there is none.
 double model_size(const Model& model);
 
 /// Of all bodies.

@@ -31,9 +31,9 @@ class LoadJudge {
       verdict.add(
           {.id = "load-size",
            .level = Trust::doubtful,
-           .message = fmt::format("{} of {:.3g} {} on {:.3g} kg in a mechanism of {:.2g} m: check its numbers and "
-                                  "their units",
-                                  worst_.element, worst_.amount, worst_.unit, all_.mass, size_),
+           .message = fmt::format("{} of {:.3g} {} on {:.3g} kg{}: check its numbers and their units", worst_.element,
+                                  worst_.amount, worst_.unit, all_.mass,
+                                  model_length(model_) > 0.0 ? fmt::format(" in a mechanism of {:.2g} m", size_) : ""),
            .element = worst_.element,
            .value = worst_.excess * worst_.limit,
            .limit = worst_.limit});
@@ -61,9 +61,15 @@ class LoadJudge {
     if (by_torque > limit * worst_.excess) worst_ = {by_torque / limit, limit, torque, "N m", element};
   }
 
+  /// Blows are judged by how deep and how fast the surfaces meet, as those in a play.
+  bool is_contact(const ForceElement& force) const {
+    return force.joint >= 0 && has_contact_statistics(record_.channels.joints[at(force.joint)]);
+  }
+
   void look_at_forces() {
     const PeakValues& peaks = record_.statistics.largest().places();
     for (int f = 0; f < static_cast<int>(model_.force_elements.size()); ++f) {
+      if (is_contact(model_.force_elements[at(f)])) continue;
       const bool applied = model_.force_elements[at(f)].applied >= 0;
       look_at(largest(peaks.applied_force(f)), largest(peaks.applied_torque(f)),
               applied ? most_of_load : most_of_element, fmt::format("force '{}'", force_words(model_, f).name));
