@@ -8,6 +8,7 @@
 
 #include "assembly/given_poses.h"
 #include "assembly/placing.h"
+#include "assembly/play_rows.h"
 #include "base/angle.h"
 #include "base/index.h"
 
@@ -18,6 +19,8 @@ constexpr double noticed = 1e-4;               // of the size, of a radian, of a
 constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its block gives
 constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose
 constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
+
+constexpr const char* by_load = "place under load";
 
 constexpr double turned = 0.25 * std::numbers::pi;  // that is no matter of taste
 
@@ -125,7 +128,15 @@ void add_moved_journal(const JointElement& joint, bool gives_velocity, const Ini
   const auto length = [](const double* v) { return std::hypot(v[0], v[1], v[2]); };
   const double play = joint.layout.clearance > 0.0 ? joint.layout.clearance : length(wanted.position);
   if (length(wanted.position) > 0.0 && apart > noticed_of_play * play) {
-    moved.push_back({{}, "eccentricity", "m", apart, apart > far_part * play, joint.location, joint.name});
+    // The place under its load is none that the file gives, and could give otherwise.
+    const bool loaded = starts_by_its_load(joint);
+    moved.push_back({{},
+                     loaded ? by_load : "eccentricity",
+                     "m",
+                     apart,
+                     !loaded && apart > far_part * play,
+                     joint.location,
+                     joint.name});
   }
   const double speed = std::max(length(wanted.velocity), 1e-3 * play);
   if (gives_velocity && rate > noticed * speed) {
@@ -171,6 +182,11 @@ std::string sentence(const MovedStart& moved) {
         "body '{}' starts turned by {} with all its frames, as joint '{}' holds it: its `pose` gives a "
         "position alone",
         moved.body, by, moved.joint);
+  }
+  if (moved.quantity == by_load) {
+    return fmt::format(
+        "the journal of joint '{}' starts {} from where its load alone would press it: other joints hold it",
+        moved.joint, by);
   }
   if (!moved.joint.empty()) {
     return fmt::format("the journal of joint '{}' starts {} from the {} that `clearance.initial` gives{}", moved.joint,

@@ -14,8 +14,9 @@ namespace freeplay {
 /// A start value of the file that the start does not have.
 struct MovedStart {
   std::string body;      ///< empty for the journal of a joint
-  std::string quantity;  ///< "position", "angle", "orientation", "velocity", "angular velocity", "eccentricity", or
-                         ///< "turn" of a body whose pose gives no angle, where a guide on ground turns its frames
+  std::string quantity;  ///< "position", "angle", "orientation", "velocity", "angular velocity", "eccentricity",
+                         ///< "turn" of a body whose pose gives no angle, where a guide on ground turns its frames, or
+                         ///< "place under load" of a journal
   std::string unit;      ///< m, rad, m/s or rad/s
   double by = 0.0;       ///< how far it was moved
   bool far = false;      ///< by more than 10 degrees, or 10 % of the size of the model or of the given velocity
