@@ -351,12 +351,16 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   }
   const auto instants = static_cast<double>(record.statistics.instants());
   const double fewest = settings.adaptive ? fewest_instants_of_accuracy : fewest_instants;
-  if (settings.discard > 0.0 && instants < fewest) {
+  // What stopped at once has said so.
+  const auto said = [](const TrustReason& reason) { return reason.id == "statistics-window"; };
+  if (std::ranges::any_of(record.outcome.doubts, said)) return;
+  const bool stopped = record.outcome.status == RunStatus::stopped && !settings.stop.empty();
+  if ((settings.discard > 0.0 || stopped) && instants < fewest) {
     verdict.add({.id = "statistics-window",
                  .level = Trust::doubtful,
-                 .message = fmt::format("statistics from {:.6g} s on are of {:g} instant{}: an earlier 'discard' or a "
-                                        "later end would do",
-                                        from, instants, instants == 1.0 ? "" : "s"),
+                 .message = fmt::format("statistics from {:.6g} s on are of {:g} instant{}: {}a later end would do",
+                                        from, instants, instants == 1.0 ? "" : "s",
+                                        settings.discard > 0.0 ? "an earlier 'discard' or " : ""),
                  .value = instants,
                  .limit = fewest});
     return;

@@ -74,6 +74,7 @@ void Simulation::Impl::begin(const RunHooks& run_hooks) {
   recorder.feed(run_hooks.steps);
   context.outcome.time = context.accepted.t();
   over = !goes_on && !(acceptance.begin() && recorder.write_row());
+  if (!over && context.outcome.steps == 0) over = !stop.look_at_start();
   end.pause_clock();
 }
 

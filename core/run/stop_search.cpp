@@ -28,6 +28,15 @@ StopSearch::StopSearch(RunContext& run, Recorder& recorder)
   }
 }
 
+bool StopSearch::look_at_start() {
+  if (!conditions_.empty() && !recorder_.know_row()) return false;
+  for (Condition& condition : conditions_) {
+    const bool counts = !(run_.accepted.t() < condition.stop->after);
+    condition.at_start = counts && condition.beyond(recorder_.row()[at(condition.column)]) > 0.0;
+  }
+  return true;
+}
+
 bool StopSearch::look(double s) {
   return recorder_.see_ahead(run_.accepted.t() + s * (run_.trial.t() - run_.accepted.t()), row_);
 }
@@ -149,6 +158,15 @@ void StopSearch::fill_outcome(const Condition& condition, bool located) {
                                               stop.above ? "above" : "below", stop.limit, run_.accepted.t())
                                 : fmt::format("{} = {:.9g} is {} {:.9g} at t = {:.9g} s", stop.channel, value,
                                               stop.above ? "above" : "below", stop.limit, run_.accepted.t());
+  if (!condition.at_start || run_.outcome.steps > 1) return;
+  run_.outcome.reason += ", as it was at the start";
+  run_.outcome.doubts.push_back(
+      {.id = "statistics-window",
+       .level = Trust::doubtful,
+       .message = fmt::format("the run ended with its first step, as {} was {} {:.9g} at the start already: is '{}' "
+                              "meant? A condition that counts later has an 'after'",
+                              stop.channel, stop.above ? "above" : "below", stop.limit, stop.above ? "below" : "above"),
+       .element = stop.channel});
 }
 
 }  // namespace freeplay

@@ -17,6 +17,9 @@ class StopSearch {
 
   bool any() const { return !conditions_.empty(); }
 
+  /// Before the first step: which conditions hold already. False when the run is over.
+  [[gnu::cold]] bool look_at_start();
+
   /// The part of the step that was just made, before it is accepted, after which a condition is first met; more than 1:
   /// none is. False when the run is over.
   bool first_inside(double& part);
@@ -39,6 +42,7 @@ class StopSearch {
     bool inside;              ///< its values are known inside steps
     double last_start = 0.0;  ///< by how much the value was past its limit at the start of the last step
     bool has_last = false;
+    bool at_start = false;              ///< it held before the first step
     std::array<double, places> past{};  ///< the same in the present one
 
     double beyond(double value) const { return stop->above ? value - stop->limit : stop->limit - value; }
