@@ -78,6 +78,16 @@ double weight(const Model& model) {
 
 void judge_end(const RunRecord& record, Verdict& verdict) {
   const Outcome& outcome = record.outcome;
+  const Settings& settings = record.model.settings;
+  if (outcome.status == RunStatus::interrupted && outcome.time < settings.end) {
+    verdict.add(
+        {.id = "run-interrupted",
+         .level = Trust::doubtful,
+         .message = fmt::format("the run was interrupted at t = {:.9g} s of {:.9g} s: nothing is known of the rest",
+                                outcome.time, settings.end),
+         .value = outcome.time,
+         .limit = settings.end});
+  }
   if (outcome.status != RunStatus::failed || verdict.level() == Trust::bad) return;
   verdict.add(
       {.id = "run-failed",

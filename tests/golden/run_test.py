@@ -319,6 +319,8 @@ simulation: {end: 10 ms, step: 1 ms}
             self.assertEqual(130, process.returncode)
             summary = self.summary(number.name)
             self.assertEqual(("interrupted", 130), (summary["status"], summary["exit_code"]))
+            reason = next(r for r in summary["trust"]["reasons"] if r["id"] == "run-interrupted")
+            self.assertEqual(("doubtful", summary["time"]["reached"], 100.0), (reason["level"], reason["value"], reason["limit"]))
             rows = self.rows(number.name, "results.csv")
             self.assertEqual({len(rows[0])}, {len(row) for row in rows})
             self.assertEqual(summary["counts"]["rows"], len(rows) - 1)
