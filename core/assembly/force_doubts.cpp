@@ -160,18 +160,36 @@ class ForceDoubts {
 
   // --- twice -----------------------------------------------------------------------------------------------------
 
-  static bool same_numbers(const ParameterBlock& one, const ParameterBlock& other) {
-    return std::ranges::equal(one.values, other.values, [](const auto& a, const auto& b) {
+  bool same_numbers(const ParameterBlock& one, const ParameterBlock& other) const {
+    if (one.component != other.component) return false;
+    return std::ranges::equal(one.values, other.values, [this](const auto& a, const auto& b) {
       const ParameterValue &x = a.second, &y = b.second;
       const bool same = x.number == y.number || (std::isnan(x.number) && std::isnan(y.number));
-      return a.first == b.first && same && x.word == y.word && x.vector == y.vector;
+      if (a.first != b.first || !same || x.word != y.word || x.vector != y.vector) return false;
+      if ((x.law != nullptr) != (y.law != nullptr) || (x.points != nullptr) != (y.points != nullptr)) return false;
+      if (x.points && (x.points->x != y.points->x || x.points->y != y.points->y)) return false;
+      return same_function(x.function, y.function) && (!x.law || same_numbers(*x.law, *y.law));
     });
   }
-  /// Laws, functions, lists and tables are not compared.
+  /// At instants of the run.
+  bool same_function(const TimeFunction& one, const TimeFunction& other) const {
+    constexpr int looks = 32;
+    if (one.evaluate == nullptr || other.evaluate == nullptr) return one.evaluate == other.evaluate;
+    const double from = model_.settings.start, span = model_.settings.end - from;
+    for (int i = 0; i <= looks; ++i) {
+      TimeValue a{}, b{};
+      Message message;
+      const double t = from + span * i / looks;
+      if (one.evaluate(one.self, t, &a, &message) != Status::ok) return false;
+      if (other.evaluate(other.self, t, &b, &message) != Status::ok || a.value != b.value) return false;
+    }
+    return true;
+  }
+  /// Formulas of other variables than time are not compared.
   static bool is_plain(const ParameterBlock& block) {
     return std::ranges::none_of(block.values, [](const auto& entry) {
       const ParameterValue& value = entry.second;
-      return value.law != nullptr || value.function_owner != nullptr || value.points != nullptr;
+      return value.by_motion || value.formula || (value.law != nullptr && !is_plain(*value.law));
     });
   }
   static double sum_of_numbers(const ParameterBlock& block) {

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/doubled_loads.h"
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
 #include "assembly/play_bypass.h"
@@ -53,6 +54,9 @@ class Examination {
       doubt(id, message, element.name, element.location);
     };
     doubt_forces(released_, open_, doubt_element);
+    doubt_doubled_loads(model_, [&](const char* id, const std::string& message, const AppliedForce& load) {
+      doubt(id, message, load.name, load.location);
+    });
     doubt_short_links(model_, doubt_element);
     judge_accuracy();
     judge_journals();

@@ -15,6 +15,9 @@ GUIDE = "  guide: {type: prismatic, between: [ground, slider]}\n"
 INERTIA, MASS, LENGTH, VALUE, ANGLE = ["doubtful-" + word for word in ("inertia", "mass", "length", "value", "angle")]
 
 # Model, text, what stands in its place, id of the warning, line of the new text where it stands, words of the message.
+PRESS = "  press: {type: force, at: box, value: [0, -100 N]}\n"
+DRAG = PRESS.replace("-100 N", "-100 N*s/m*body.box.vy")
+BRAKE = "{type: brake, between: [ground/b, two], limit: '2 N*m*smooth(t, 0, 0.1)', stiffness: 1 kN*m/rad}"
 MISTAKES = [
     (HANGER, "inertia: 2e-3", "inertia: 200", INERTIA, "200", "its frames reach 0.1 m"),  # one pin: its length is the arm's
     (CRANK, "2.5e-4", "250", INERTIA, "250", "radius of gyration"),
@@ -143,6 +146,11 @@ MISTAKES = [
     (TRAIN, "ratio: 2", "ratio: 360", VALUE, "360", "360 times", {"kind: velocity, value: 10": "kind: angle, value: 0.1*sin(300*t)"}),
     (BOX, FOOT, FOOT + FOOT.replace("foot", "again"), "duplicate-force", "again", "'foot'"),
     (BOX, FOOT, FOOT + FOOT.replace("foot", "again").replace("ground/floor, box", "box, ground/floor"), "duplicate-force", "again", "'foot'"),
+    (BOX, FOOT, FOOT + PRESS + PRESS.replace("press", "again"), "duplicate-force", "again", "'again' is the same force at the same place as 'press'"),
+    (BOX, FOOT, FOOT + DRAG + DRAG.replace("press", "again"), "duplicate-force", "again", "'press'"),
+    (TRAIN, "drivers:", "forces: {a: {type: torque, on: two, value: -1 N*m}, b: {type: torque, on: two, value: -1 N*m}}\ndrivers:",
+     "duplicate-force", "b: {type", "is the same torque"),
+    (TRAIN, "drivers:", "forces:\n  c: %s\n  d: %s\ndrivers:" % (BRAKE, BRAKE), "duplicate-force", "d: ", "'c'"),
     (BOX, FOOT, FOOT + "  idle: {type: spring-damper, between: [ground, box], free_length: 0.1}\n", "unused", "idle", "does nothing"),
     (BOX, "ground/floor, box", "ground, box", LENGTH, "foot", "at one place", {", ground/floor: [0, -0.3]": ""}),
     (BOX, "stiffness: 2e4", "stiffness: 20", VALUE, "foot", "98.1 m"),
@@ -212,6 +220,9 @@ SOUND = [
     (STOP, "", ""),
     (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m"),
     (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m, damping: 100"),
+    (BOX, FOOT, FOOT + PRESS + PRESS.replace("press", "again").replace("-100", "-101")),
+    (BOX, FOOT, FOOT + PRESS + PRESS.replace("press", "again").replace("at: box", "at: box/up")),
+    (TRAIN, "drivers:", "forces:\n  c: %s\n  d: %s\ndrivers:" % (BRAKE, BRAKE.replace("0.1)", "0.2)"))),
     (HANGING, "", ""),
     (HANGING, "kind: angle, value: 0.3*sin(20*t)", "kind: torque, value: 1"),
 

@@ -113,6 +113,7 @@ simulation: {end: 0.1 s, step: 10 us}
 LIBRARIES = {"TEMPLATE": os.path.join(BUILD, "plugins", "template", "template_integrator.so"),
              "PROBE": os.path.join(BUILD, "plugins", "probes", "probe_throws_in_apply.so"),
              "ENDLESS": os.path.join(BUILD, "plugins", "tests", "endless_events.so")}
+TORQUE = "{type: torque, on: rod, value: 1 N*m}"
 SPRING = "{type: spring-damper, kind: rotational, between: [ground, rod], stiffness: 10}"
 RUN = ["run", "model.yaml", "--force"]
 
@@ -230,6 +231,8 @@ CASES = {
         (0, pendulum("initial:", "  twin: {type: revolute, between: [ground, rod]}\ninitial:"), RUN),
     "'...' has the same frames and numbers as '...', so that both act as one twice as strong: ... [duplicate-force]":
         (0, pendulum("initial:", "forces:\n  one: %s\n  two: %s\ninitial:" % (SPRING, SPRING)), RUN),
+    "'...' is the same ... at the same place as '...', so that both act as one twice as large: ... [duplicate-force]":
+        (0, pendulum("initial:", "forces:\n  one: %s\n  two: %s\ninitial:" % (TORQUE, TORQUE)), RUN),
     "'...' moves nothing: joint '...' keeps '...' from ... against '...'; ... [idle-force]":
         (0, pendulum("initial:", "forces: {rub: {type: joint-friction, between: [ground, rod], friction: 1}}\ninitial:"), RUN),
     "joint '...' cannot move: with ... it closes a loop in which nothing can; ... [locked]":
