@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <vector>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
@@ -29,6 +30,8 @@ constexpr double least_beyond = 0.01;    // rad, or of the size of the model
 constexpr double in_turns = 0.5 / std::numbers::pi;
 constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
 constexpr double same_ratio = 1e-6;     // of strands and of a gear between their wheels
+constexpr double most_strain = 0.1;     // of strands by drivers of both their wheels: no belt bears a tenth
+constexpr int looks_of_run = 256;       // at what drivers prescribe
 
 class Elements {
  public:
@@ -43,7 +46,7 @@ class Elements {
       judge_damping(j);
       judge_ends(j);
       judge_turn(j);
-      judge_strands(j);
+      if (!judge_strands(j)) judge_driven_strands(j);
     }
   }
 
@@ -263,30 +266,108 @@ class Elements {
         element);
   }
 
-  /// Strands round two wheels that want another ratio of these than the joints leave them, as where gears turn one the
-  /// other way.
-  void judge_strands(int j) {
-    const JointElement& element = model_.joints[at(j)];
+  /// Strands round two wheels.
+  struct Strands {
+    double first = 0.0, second = 0.0;  ///< radii [m]
+    double sense = 1.0;                ///< -1: crossed
+    double length = 0.0;               ///< between the centres [m]
+    Eigen::Vector3d back;              ///< a speed of the second centre by which the line of both turns back [1/m]
+  };
+  std::optional<Strands> strands_of(const JointElement& element) const {
     const double first = number(element, "first_radius"), second = number(element, "second_radius");
     const auto strands = element.parameters->values.find("strands");
     const Eigen::Vector3d line = apart(element);
     if (!(first > 0.0 && second > 0.0) || strands == element.parameters->values.end() || line.norm() < one_place)
-      return;
+      return std::nullopt;
+    return Strands{first, second, strands->second.word == 0 ? 1.0 : -1.0, line.norm(),
+                   Eigen::Vector3d(line[1], -line[0], 0.0) / line.squaredNorm()};
+  }
+
+  /// Strands that want another ratio of their wheels than the joints leave them, as where gears turn one the other way.
+  /// True after a message.
+  bool judge_strands(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const std::optional<Strands> strands = strands_of(element);
+    if (!strands) return false;
+    const double first = strands->first, second = strands->second, sense = strands->sense;
     // How far both turn against the line of their centres.
-    const Eigen::Vector3d back = Eigen::Vector3d(line[1], -line[0], 0.0) / line.squaredNorm();
     const MatrixXd free = null_space(constraints().topRows(system_.layout().first_driver_row()));
-    const MatrixXd a = rate_of_ends(element, back, 1.0, 0.0) * free, b = rate_of_ends(element, back, 0.0, 1.0) * free;
-    if (free.cols() == 0 || a.norm() < counts_as_motion || b.norm() < counts_as_motion) return;
-    const double ratio = a.row(0).dot(b.row(0)) / a.squaredNorm();
-    const double sense = strands->second.word == 0 ? 1.0 : -1.0, own = sense * first / second;
+    const MatrixXd a = rate_of_ends(element, strands->back, 1.0, 0.0) * free,
+                   b = rate_of_ends(element, strands->back, 0.0, 1.0) * free;
+    if (free.cols() == 0 || a.norm() < counts_as_motion || b.norm() < counts_as_motion) return false;
+    const double ratio = a.row(0).dot(b.row(0)) / a.squaredNorm(), own = sense * first / second;
     if ((b - ratio * a).norm() > counts_as_motion * b.norm() || std::abs(ratio - own) < same_ratio * std::abs(own))
-      return;
+      return false;
     doubt(
         "doubtful-value",
         fmt::format("'{}' turns '{}' by {:.4g} of '{}', but the joints turn it by {:.4g}, which stretches its strands "
                     "by {:.3g} m in each turn: check 'strands' and the radii, or the ratio of the gear",
                     element.name, body_name(element.marker_b), own, body_name(element.marker_a), ratio,
                     std::abs(first - sense * ratio * second) / in_turns),
+        element);
+    return true;
+  }
+
+  /// By how much each radian or metre of each driver winds more strand on the one wheel than off the other, centres at
+  /// rest; nothing where drivers do not prescribe it. Rows of angles alone, which hold as they are all through a run.
+  std::optional<std::vector<double>> winding_by_driver(const JointElement& element, const Strands& strands) {
+    const MatrixXd free = null_space(constraints().topRows(system_.layout().first_driver_row()));
+    const MatrixXd line = rate_of_ends(element, strands.back, 0.0, 0.0);
+    if (free.cols() == 0 || (line * free).norm() > counts_as_motion * line.norm()) return std::nullopt;
+    const MatrixXd wound =
+        rate_of_ends(element, Eigen::Vector3d::Zero(), strands.first, -strands.sense * strands.second);
+    MatrixXd rows = MatrixXd::Zero(constraints().rows(), constraints().cols());
+    for (Eigen::Index r = 0; r < rows.rows(); ++r) {
+      bool turns_alone = true;
+      for (Eigen::Index c = 0; c < rows.cols(); ++c)
+        turns_alone = turns_alone && (constraints_(r, c) == 0.0 || system_.coordinates().is_turn(static_cast<int>(c)));
+      if (turns_alone) rows.row(r) = constraints_.row(r);
+    }
+    const VectorXd parts = least_norm_solution(rows.transpose(), VectorXd(wound.transpose()), rank_threshold);
+    if (!((rows.transpose() * parts - wound.transpose()).norm() <= counts_as_motion * wound.norm()))
+      return std::nullopt;
+    std::vector<double> by_driver(model_.drivers.size(), 0.0);
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      if (!prescribes(driver.kind)) continue;
+      const double part = parts[system_.layout().driver_row(d)];
+      if (std::abs(part) < counts_as_motion * parts.norm()) continue;
+      if (driver.kinematics >= 0) return std::nullopt;
+      by_driver[at(d)] = part;
+    }
+    return by_driver;
+  }
+
+  /// Drivers that turn both wheels of strands, and not by the ratio of these.
+  void judge_driven_strands(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const std::optional<Strands> strands = strands_of(element);
+    const auto by_driver = strands ? winding_by_driver(element, *strands) : std::nullopt;
+    if (!by_driver) return;
+    std::vector<TimeValue> start(model_.drivers.size()), now(start);
+    const double from = model_.settings.start, span = model_.settings.end - from;
+    double most = 0.0;
+    for (int i = 0; i <= looks_of_run; ++i) {
+      MotionFault fault;
+      std::vector<TimeValue>& values = i == 0 ? start : now;
+      if (!system_.motions().evaluate(from + span * i / looks_of_run, {values.data(), values.size()}, fault)) return;
+      double wound = 0.0;
+      for (std::size_t d = 0; d < values.size() && i > 0; ++d)
+        wound += (*by_driver)[d] == 0.0 ? 0.0 : (*by_driver)[d] * (now[d].value - start[d].value);
+      most = std::max(most, std::abs(wound));
+    }
+    if (!(most > most_strain * strands->length)) return;
+    std::string names;
+    for (std::size_t d = 0; d < by_driver->size(); ++d) {
+      if ((*by_driver)[d] != 0.0) names += fmt::format("{}'{}'", names.empty() ? "" : " and ", model_.drivers[d].name);
+    }
+    doubt(
+        "doubtful-value",
+        fmt::format("'{}' turns '{}' by {:.4g} of '{}', but {} turn them otherwise, which stretches its strands by up "
+                    "to {:.3g} m of {:.3g} m between their wheels: check 'strands' and the radii, or signs and values "
+                    "of the drivers",
+                    element.name, body_name(element.marker_b), strands->sense * strands->first / strands->second,
+                    body_name(element.marker_a), names, most, strands->length),
         element);
   }
 

@@ -84,6 +84,26 @@ simulation: {end: 1, step: 1 ms}
 """), "--json")
         self.assertEqual([], json.loads(out)["messages"])
 
+    def test_one_between_two_drivers_of_another_ratio_is_doubted(self):
+        """Over the run the strands are stretched by the integral of |r1 w1 - s r2 w2|, s = 1 of open ones."""
+        for gears, bodies, ends in (self.GEARS[0], ("", "", "")):
+            for strands, sense in (("open", 1), ("crossed", -1)):
+                for rate, found in ((5 / 12, 0), (-5 / 12, 1.0), (5 / 12 + 0.2, 0.24), (5 / 12 + 0.01, 0)):
+                    with self.subTest(gears=gears, strands=strands, rate=rate):
+                        text = self.TEXT % (400, strands, "0 N*m", "10*t", 1, "step: 1 ms")
+                        if gears:  # the second driver turns a gear beside the pulley
+                            text = text.replace("}}\nforces:", "}\n  c: {type: revolute, between: [ground, wheel]}\n"
+                                                "  g: {type: gear, of: [l, c], ratio: 2}\nforces:").replace("joints: {s:", "joints:\n  s:")
+                            text = text.replace("}, l: {", "}\n  l: {").replace("inertia: 0.04}", "inertia: 0.04}, wheel: {mass: 1, inertia: 0.01}")
+                        text = text.replace("\nsimulation", "\n  more: {joint: %s, kind: velocity, value: %r}\nsimulation" % (
+                            "c" if gears else "l", 10 * sense * rate * (2 if gears else 1))).replace("drivers: {motor", "drivers:\n  motor").replace(
+                                'value: "10*t"}}', 'value: "10*t"}')
+                        out, _ = self.freeplay("validate", self.model(text, "freeplay: 1\n"), "--json")
+                        said = [m["message"] for m in json.loads(out)["messages"]]
+                        self.assertEqual(1 if found else 0, len(said), said)
+                        if found:
+                            self.assertIn("but 'motor' and 'more' turn them otherwise, which stretches its strands by up to %.3g m of 0.5 m" % found, said[0])
+
     def test_the_ratio_is_that_of_the_radii(self):
         for strands, ratio in (("open", 5 / 12), ("crossed", -5 / 12)):
             columns = self.run_model(self.TEXT % (400, strands, "0 N*m", "10 rad*smooth(t, 0 s, 0.5 s)", 1,
