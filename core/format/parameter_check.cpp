@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "format/arc_keys.h"
+#include "format/doubtful_curve.h"
 #include "format/doubtful_points.h"
 #include "format/draft.h"
 #include "format/parameter_tree.h"
@@ -295,6 +296,7 @@ class ParameterCheck {
     }
     const std::optional<Expression> expression = written.formula(variables, unit.dimension);
     if (!expression) return false;
+    doubt_angle_of_curve(*expression, variables, unit.dimension, written);
     set_formula(value, *expression, written.node().location_at(0), written.node().verbatim);
     return true;
   }

@@ -146,6 +146,8 @@ MISTAKES = [
     (TRAIN, "ratio: 2", "ratio: 360", VALUE, "360", "360 times", {"kind: velocity, value: 10": "kind: angle, value: 0.1*sin(300*t)"}),
     (BOX, FOOT, FOOT + FOOT.replace("foot", "again"), "duplicate-force", "again", "'foot'"),
     (BOX, FOOT, FOOT + FOOT.replace("foot", "again").replace("ground/floor, box", "box, ground/floor"), "duplicate-force", "again", "'foot'"),
+    (CAM, "60 deg, 120 deg", "60, 120", ANGLE, '"25 mm', "all the way round, though it changes with 'x', which is in radians", {"180 deg, 240 deg": "180, 240"}),
+    (PLATE, "100 deg, 180 deg", "100, 180", ANGLE, '"20 mm', "'forces.t.first' is 0.02 m all the way round", {"180 deg, 260 deg": "180, 260"}),
     (BOX, FOOT, FOOT + PRESS + PRESS.replace("press", "again"), "duplicate-force", "again", "'again' is the same force at the same place as 'press'"),
     (BOX, FOOT, FOOT + DRAG + DRAG.replace("press", "again"), "duplicate-force", "again", "'press'"),
     (TRAIN, "drivers:", "forces: {a: {type: torque, on: two, value: -1 N*m}, b: {type: torque, on: two, value: -1 N*m}}\ndrivers:",
@@ -217,6 +219,10 @@ simulation: {end: 0.1, step: 1e-4}
 """
 # What looks like these but is meant: no warning at all.
 SOUND = [
+    (CAM, "", ""),
+    (CAM, "8 mm*(", "0 mm*("),  # a circle in any unit
+    (CAM, "25 mm + 8 mm*(smooth(x, 60 deg, 120 deg) - smooth(x, 180 deg, 240 deg))", "25 mm/sqrt(cos(x)^2 + sin(x)^2)"),
+    (PLATE, "", ""),
     (STOP, "", ""),
     (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m"),
     (STOP, "contact: {law: hertz, K: 1e9}", "stiffness: 1 N/m, damping: 100"),

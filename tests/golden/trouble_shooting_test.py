@@ -201,6 +201,9 @@ CASES = {
     # Doubted, and run all the same
     "'...' is ... rad, ... turns: write '... deg' if degrees are meant, else '... rad' [doubtful-angle]":
         (0, pendulum("0 deg", "60"), RUN),
+    "'...' is ... m all the way round, though it changes with '...', which is in radians: ... [doubtful-angle]":
+        (0, pendulum("initial:", "  rider: {type: point-on-curve, form: polar, between: [ground, puck], curve: '1 m + 0.1 m*smooth(x, 60, 120)'}\ninitial:").replace(
+            "bodies:", "bodies:\n  puck: {mass: 1 kg, inertia: 1, pose: {position: [1, 0]}}"), RUN),
     "'...' is ... rad/s, that is ... rpm: write '... rpm' if revolutions per minute are meant, else '... rad/s' [doubtful-speed]":
         (0, driven("value: t", "value: 3000*t"), RUN + ["--step", "10 us"]),
     "'...' is ... m/s^2, ... times that of the earth: write the unit after the number, as in '... mm/s^2' [doubtful-value]":
