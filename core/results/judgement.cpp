@@ -10,6 +10,7 @@
 #include "results/singular_judgement.h"
 #include "run/lasting_blows.h"
 #include "run/motion_period.h"
+#include "run/slowest_turn.h"
 
 namespace freeplay {
 namespace {
@@ -308,19 +309,28 @@ bool turns_in_part(const Model& model, const Driver& driver, double period) {
   return true;
 }
 
-struct SlowestDriver {
-  const Driver* driver = nullptr;
-  double period = 0.0;  ///< [s]
+struct Slowest {
+  double period = 0.0;      ///< [s]; 0: nothing has one
+  std::string element{};    ///< "driver 'm'", or the joint that it turns most slowly
+  std::string by_driver{};  ///< ", which driver 'm' turns"
 };
-SlowestDriver slowest_driver(const Model& model, double from) {
-  SlowestDriver slowest;
+/// A driver, or a joint that one turns through gears and belts.
+Slowest slowest_motion(const Model& model, double from) {
+  Slowest slowest;
   const double run = model.settings.end - model.settings.start;
   for (const Driver& driver : model.drivers) {
     std::optional<double> period;
     for (const double longest_by_run : longest_periods) {
       if (!period) period = motion_period(model, driver, from, longest_by_run * run);
     }
-    if (period && *period > slowest.period && !turns_in_part(model, driver, *period)) slowest = {&driver, *period};
+    const std::string own = fmt::format("driver '{}'", driver.name);
+    if (period && *period > slowest.period && !turns_in_part(model, driver, *period)) slowest = {*period, own};
+    const auto turn = turn_period(model, driver, from, run);
+    // A part of a turn without `discard` is a motion of its own, as that of a crane.
+    if (!turn || model.settings.discard == 0.0) continue;
+    const SlowestTurn geared = slowest_turn(model, driver.joint);
+    if (geared.joint != driver.joint && *turn > slowest.period * geared.ratio)
+      slowest = {*turn / geared.ratio, name(model.joints[at(geared.joint)]), fmt::format(", which {} turns", own)};
   }
   return slowest;
 }
@@ -335,12 +345,12 @@ void judge_instant(const Settings& settings, double window, Verdict& verdict) {
                .limit = shortest_window * settings.discard});
 }
 
-bool judge_period(double window, double period, const std::string& element, Verdict& verdict) {
+bool judge_period(double window, double period, const std::string& element, const std::string& by, Verdict& verdict) {
   if (window >= period * whole_period) return false;
   verdict.add({.id = "statistics-window",
                .level = Trust::doubtful,
-               .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of {}", window,
-                                      period, element),
+               .message = fmt::format("statistics cover {:.3g} s, less than the period of {:.3g} s of {}{}", window,
+                                      period, element, by),
                .element = element,
                .value = window,
                .limit = period});
@@ -375,9 +385,9 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
                  .limit = fewest});
     return;
   }
-  const SlowestDriver slowest = slowest_driver(record.model, from);
-  if (slowest.driver != nullptr) {
-    judge_period(window, slowest.period, fmt::format("driver '{}'", slowest.driver->name), verdict);
+  const Slowest slowest = slowest_motion(record.model, from);
+  if (slowest.period > 0.0) {
+    judge_period(window, slowest.period, slowest.element, slowest.by_driver, verdict);
     return;
   }
   if (settings.discard > 0.0 && window < shortest_window * settings.discard)
@@ -385,7 +395,7 @@ void judge_window(const RunRecord& record, Verdict& verdict) {
   const Swing& swing = record.outcome.slowest;
   if (swing.body >= 0) {
     const std::string& body = record.model.bodies[at(swing.body)].name;
-    if (judge_period(window, swing.period, fmt::format("body '{}'", body), verdict)) return;
+    if (judge_period(window, swing.period, fmt::format("body '{}'", body), "", verdict)) return;
   }
   // Without a period what was left out at the start says that a lasting state is looked for.
   const auto impacts = static_cast<double>(record.statistics.contacts());

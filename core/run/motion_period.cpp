@@ -36,7 +36,13 @@ std::optional<double> motion_period(const Model& model, const Driver& driver, do
   }
   if (!driver.by_motion.empty()) return std::nullopt;
   const auto period = period_of(driver.value, driver.kind, from, longest);
-  if (!period || *period > 0.0) return period;
+  return period && *period == 0.0 ? turn_period(model, driver, from, longest) : period;
+}
+
+std::optional<double> turn_period(const Model& model, const Driver& driver, double from, double longest) {
+  if (driver.kinematics >= 0 || driver.table || !driver.by_motion.empty()) return std::nullopt;
+  const auto period = period_of(driver.value, driver.kind, from, longest);
+  if (!period || *period > 0.0) return std::nullopt;
   const bool turns = model.joints[static_cast<std::size_t>(driver.joint)].layout.coordinate == Coordinate::angle;
   Jet jet;
   EvaluationFailure failure;
