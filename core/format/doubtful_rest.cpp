@@ -104,26 +104,38 @@ class RestDoubts {
     }
   }
 
+  /// The last point before a table that has `value` at `start` leaves it; infinite where it keeps it for good.
+  static double leaving(const TimeTable& table, double start, double value) {
+    double point = start;
+    // Of one that repeats each point comes within a period, and those at its ends may come twice.
+    for (std::size_t i = 0; i < table.times().size() + 3; ++i) {
+      const double next = table.next_point(point);
+      if (!(next < unbounded)) break;
+      for (const double t : {0.5 * (point + next), next}) {
+        Jet jet;
+        EvaluationFailure failure;
+        if (table.evaluate(t, jet, failure) && jet.value != value) return point;
+      }
+      point = next;
+    }
+    return unbounded;
+  }
+
   void judge(const TimeTable& table, Waiting waiting) const {
     const double end = settings_.start + inside * span();
-    const std::span<const double> times = table.times(), values = table.values();
-    const auto last = static_cast<std::size_t>(std::ranges::upper_bound(times, end) - times.begin());
     Jet first, jet;
     EvaluationFailure failure;
-    // Of a table that is repeated all is in the run, or the run is in all.
-    const bool known = table.evaluate(settings_.start, first, failure) && table.evaluate(end, jet, failure);
-    if (!known || last == times.size()) return;
+    if (!table.evaluate(settings_.start, first, failure)) return;
     for (std::size_t i = 0; i <= 128; ++i) {
       const double t = settings_.start + (end - settings_.start) * static_cast<double>(i) / 128.0;
       if (!table.evaluate(t, jet, failure) || jet.value != first.value) return;
     }
-    for (std::size_t i = 0; i < last; ++i) {
-      if (values[i] != first.value) return;
+    waiting.zero = first.value == 0.0, waiting.begins = leaving(table, settings_.start, first.value);
+    if (!(waiting.begins >= end && waiting.begins < unbounded)) return;
+    // What has changed before the run does not begin to.
+    for (std::size_t i = 0; i < table.times().size() && table.times()[i] <= settings_.start; ++i) {
+      if (table.values()[i] != first.value) return;
     }
-    const auto changes = std::ranges::find_if(values, [&](double value) { return value != first.value; });
-    if (changes == values.end()) return;
-    const auto place = static_cast<std::size_t>(changes - values.begin());
-    waiting.zero = first.value == 0.0, waiting.begins = times[place > 0 ? place - 1 : 0];
     warn(waiting, "check the unit of its times, or the end of the run");
   }
 

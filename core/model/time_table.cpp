@@ -141,14 +141,15 @@ bool TimeTable::evaluate(double t, Jet& out, EvaluationFailure& failure) const n
 // The next end of the table or, if `inner`, point.
 double TimeTable::next_place(double t, bool inner) const noexcept {
   const double first = times_.front(), last = times_.back(), none = std::numeric_limits<double>::infinity();
-  if (t < first) return first;
   const bool repeats = outside_ == Outside::repeat;
+  if (!repeats && t < first) return first;
   const double behind_last = repeats ? last : last + end_rounding();
   if (!repeats && t >= behind_last) return none;
   const double period = last - first, passed = repeats ? std::floor((t - first) / period) : 0.0;
-  // The time may be at the end of the period before, or rounded to it.
-  for (const double periods : {std::max(passed - 1.0, 0.0), passed, passed + 1.0}) {
-    const double shift = periods * period, end = periods == 0.0 ? behind_last : last + shift;
+  // The time may be at the end of the period before, or rounded to it; from the first time on none is before.
+  const double before = t < first ? passed - 1.0 : std::max(passed - 1.0, 0.0);
+  for (const double periods : {before, passed, passed + 1.0}) {
+    const double shift = periods * period, end = repeats ? last + shift : behind_last;
     if (inner) {
       // What t - shift is rounded to may be one point off on either side. The first is the end of the period before.
       auto point = std::upper_bound(times_.begin() + 1, times_.end() - 1, t - shift);

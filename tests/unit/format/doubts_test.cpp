@@ -112,6 +112,13 @@ constexpr Answer of_motions[] = {
     {"drivers: {m: {joint: A, kind: angle, table: {points: [[5, 0], [6, 1]], interpolation: linear}}}",
      "10:45 doubtful-time: 'drivers.m.table' depends on t, but the run ends at 1 s, before it begins to change, at 5 "
      "s: check the unit of its times, or the end of the run"},
+    {"drivers: {m: {joint: A, kind: torque, table: {points: [[2, 0], [6.1, 0], [6.2, 1], [6.3, 0], [7.9, 0]], "
+     "interpolation: linear, outside: repeat}}}",
+     ""},
+    {"drivers: {m: {joint: A, kind: torque, table: {points: [[-5, 0], [2.1, 0], [2.2, 1], [3, 0]], "
+     "interpolation: linear, outside: repeat}}}",
+     "10:46 doubtful-time: 'drivers.m.table' depends on t, but the run ends at 1 s, before it begins to change, at 2.1 "
+     "s, so that it is zero all the time: check the unit of its times, or the end of the run"},
     {"drivers: {m: {joint: A, kind: velocity, value: 2*pi*1000}}",
      "10:48 doubtful-time: 'drivers.m.value' turns the joint by 6.28 rad in one step of 0.001 s: shorten 'step', or "
      "give 'accuracy' in its place\n10:48 doubtful-speed: 'drivers.m.value' comes to 6283.19 rad/s, that is 60000 rpm, "

@@ -137,8 +137,8 @@ TEST(TimeTable, NoPointOfARepeatedTableIsPassedByInAnyPeriod) {
     const TimeTable table(times, {0.0, 0.0, 1.0, 0.0, 0.0}, Interpolation::linear, SplineEnds::natural,
                           Outside::repeat);
     const double period = times.back() - times.front();
-    double t = times.front();
-    for (int k = 0; k < 1000; ++k) {
+    double t = times.front() - 1000.0 * period;
+    for (int k = -1000; k < 1000; ++k) {
       for (std::size_t i = 1; i < times.size(); ++i) {
         const double next = table.next_kink(t);
         ASSERT_NEAR(next, times[i] + k * period, 1e-11) << "point " << i << " of period " << k;
