@@ -67,6 +67,8 @@ struct Spring {
   double stored(double stretch) const {
     const double linear = (0.5 * stiffness * stretch + preload) * stretch;
     if (!spring) return linear;
+    double known = 0.0;
+    if (spring.integral(0.0, stretch, known)) return linear + known;
     return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
   }
   /// A sentence where a function makes a stiffness or a damping negative, or the ends of a linear spring are as good as
@@ -110,6 +112,8 @@ struct Spring {
 
  private:
   void store_spring() {
+    double known = 0.0;
+    if (spring.integral(0.0, 1.0, known)) return;
     const auto force = [formula = spring](double stretch) { return formula.at({&stretch, 1}); };
     const std::vector<double> corners = FormulaCorners::of(spring, smallest_stretch, largest_stretch);
     pulled = IntegralFromZero(force, smallest_stretch, largest_stretch, corners);

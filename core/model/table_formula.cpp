@@ -32,8 +32,9 @@ struct TableFormula final : ServedFormula {
 
   /// Its value and derivatives over a range of the variable: exact second derivatives, as these are linear between
   /// points, and from them what the others can come to. The slope of straight lines jumps at a point.
-  IntervalJet range(const Interval& x) const {
+  IntervalJet range(Interval x) const {
     if (!x.is_finite()) return unknown_jet();
+    if (repeats && x.high - x.low >= high - low) x = {low, high};  // what comes again need not be looked at again
     IntervalJet out{};
     bool first = true;
     for (double from = x.low; first || from < x.high;) {
@@ -68,6 +69,14 @@ struct TableFormula final : ServedFormula {
     table.evaluate(x, out, ignored);
     return out;
   }
+  /// Of what repeats: any number of periods may lie between the two, more than quadrature can look at.
+  bool integral(double from, double to, double& value) const {
+    double before = 0.0, after = 0.0;
+    EvaluationFailure ignored;
+    if (!repeats || !table.integral(from, before, ignored) || !table.integral(to, after, ignored)) return false;
+    value = after - before;
+    return true;
+  }
   std::size_t switches() const { return table.is_straight() && !repeats ? table.times().size() - 2 : 0; }
 };
 
@@ -87,6 +96,9 @@ constexpr abi::FormulaTable table_formula{
     [](const void* self, Span<const double> variables, Span<double> values) noexcept {
       const TableFormula& me = table_of(self);
       for (std::size_t i = 0; i < values.size; ++i) values[i] = variables[0] - me.table.times()[i + 1];
+    },
+    [](const void* self, double from, double to, double* value) noexcept {
+      return table_of(self).integral(from, to, *value);
     }};
 
 }  // namespace

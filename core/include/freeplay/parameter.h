@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -99,6 +100,8 @@ struct FormulaTable {
                      Message*) noexcept;
   std::int32_t (*switches)(const void* self) noexcept;
   void (*decide)(const void* self, Span<const double> variables, Span<double> values) noexcept;
+  /// Null, or not there in older hosts: no integral is known. False: of this one none is.
+  bool (*integral)(const void* self, double from, double to, double* value) noexcept = nullptr;
 };
 }  // namespace abi
 
@@ -121,6 +124,11 @@ class Formula {
   /// where the formula changes its form; NaN where it has none.
   std::int32_t switches() const { return table_->switches(self_); }
   void decide(Span<const double> variables, Span<double> values) const { table_->decide(self_, variables, values); }
+  /// Of one variable: its exact integral, where the host knows one, as of points that repeat for ever.
+  bool integral(double from, double to, double& value) const {
+    const bool has = table_->size > offsetof(abi::FormulaTable, integral) && table_->integral != nullptr;
+    return has && table_->integral(self_, from, to, &value);
+  }
 
  private:
   const abi::FormulaTable* table_ = nullptr;
