@@ -179,6 +179,7 @@ std::optional<Verification> verify_run(const VerifiedRun& run, std::string& trou
   rules.limit = std::max(least_agreement, both_errors * settings.accuracy);
   rules.size = run.system.size();
   rules.energy = second.energy;
+  rules.length = both_errors * asked;
   rules.fixed = settings.accuracy == 0.0;
   for (const Body& body : model.bodies) add_positions(body, *second.channels, rules.positions);
   const RunResult first{&run.rows, peaks_of(model, run.statistics)};

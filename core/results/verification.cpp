@@ -9,14 +9,16 @@
 namespace freeplay {
 namespace {
 
-constexpr double sure = 30.0;      // differences that the second method does not explain, over those that it does
-constexpr double loud = 10.0;      // limits
-constexpr double loud_way = 0.01;  // of the farthest way, with fixed steps
-constexpr double chaotic = 30.0;   // limits, by which runs of one method part
-constexpr double same_peak = 0.1;  // of the larger one
+constexpr double sure = 30.0;       // differences that the second method does not explain, over those that it does
+constexpr double loud = 10.0;       // limits
+constexpr double loud_way = 0.01;   // of the farthest way, with fixed steps
+constexpr double chaotic = 30.0;    // limits, by which runs of one method part
+constexpr double same_peak = 0.1;   // of the larger one
+constexpr double same_sight = 0.5;  // of the larger one: two largest values that are farther apart saw other loads
 constexpr double negligible_peak = 1e-6;   // of the largest of the same kind
 constexpr double negligible_lever = 1e-5;  // of the model's size: a torque that its forces have by it is none
 constexpr double negligible_work = 1e-2;   // of the energy that was moved: what comes and goes leaves rounding
+constexpr double negligible_force = 1e-9;  // of the one that does that energy's work along the model's size
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 struct Moments {
@@ -76,7 +78,13 @@ double farthest_way(const ResultTable& table, const VerificationRules& rules) {
 /// The last word of a name.
 std::string_view kind_of(const PeakPair& peak) { return std::string_view(peak.name).substr(peak.name.rfind(' ') + 1); }
 
-/// Below, a figure is none: in terms of the largest of its kind, and a torque of that of all forces, too.
+/// An error of a path, or how deep surfaces are in each other.
+bool is_length(const PeakPair& peak) { return kind_of(peak) == "error" || kind_of(peak) == "delta"; }
+/// One instant decides a largest value; a mean or a work is of all the run.
+bool is_largest(const PeakPair& peak) { return peak.name.find(" max ") != std::string::npos; }
+
+/// Below, a figure is none: in terms of the largest of its kind, a torque of that of all forces, too; a length is none
+/// that is shorter than what positions may err by.
 double negligible(std::span<const PeakPair> peaks, const PeakPair& of, const VerificationRules& rules) {
   if (kind_of(of) == "work") return negligible_work * rules.energy;
   const double size = rules.size;
@@ -86,8 +94,10 @@ double negligible(std::span<const PeakPair> peaks, const PeakPair& of, const Ver
     if (kind_of(peak) == kind_of(of)) alike = std::fmax(alike, larger);
     if (kind_of(peak) == "|F|" || kind_of(peak) == "|force|") force = std::fmax(force, larger);
   }
-  const double limit = negligible_peak * alike;
-  return kind_of(of) == "|torque|" ? std::fmax(limit, negligible_lever * size * force) : limit;
+  const double limit = negligible_peak * alike, by_energy = negligible_force * rules.energy;
+  if (is_length(of)) return std::fmax(limit, rules.length);
+  if (kind_of(of) == "|torque|") return std::max({limit, negligible_lever * size * force, by_energy});
+  return size > 0.0 ? std::fmax(limit, by_energy / size) : limit;
 }
 
 void compare_peaks(const RunResult& run, const RunResult& second, const VerificationRules& rules, Verification& out) {
@@ -166,7 +176,10 @@ void judge(Verification& verification, const RunResult& run, const RunResult& se
   for (std::size_t i = 0; i < std::min(verification.peaks.size(), third.peaks.size()); ++i) {
     const PeakPair& peak = verification.peaks[i];
     const double by_method = std::abs(peak.second - third.peaks[i].value);
-    if (peak.differs && 5.0 * by_method < std::abs(peak.run - peak.second)) {
+    const double by_run = std::abs(peak.run - peak.second);
+    const double sight = is_largest(peak) ? same_sight : same_peak;
+    const double larger = std::fmax(std::abs(peak.run), std::abs(peak.second));
+    if (peak.differs && by_run > sight * larger && 5.0 * by_method < by_run) {
       verification.agreement = Agreement::disagree;
       return;
     }

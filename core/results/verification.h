@@ -56,7 +56,8 @@ struct VerificationRules {
   double limit = 1e-6;
   bool fixed = false;   ///< the first run takes fixed steps: nothing is promised of its error
   double size = 0.0;    ///< of the model [m]; torques are compared with forces by it
-  double energy = 0.0;  ///< that was moved in the second run [J]: a small part of it is no work
+  double energy = 0.0;  ///< that was moved in the second run [J]: a small part of it is no work, and makes no force
+  double length = 0.0;  ///< by which positions of both runs may differ [m]: shorter errors and penetrations are none
 };
 
 struct Verification {
@@ -80,8 +81,9 @@ Verification compare_runs(const RunResult& run, const RunResult& second, const V
 /// What to make of runs that do not agree, by a third one that takes the second's method less accurately. Where that
 /// differs from the second as well, by tens of the limit, the motion is chaotic (`part`). Where the first differs from
 /// the second by more than 30 times what these two differ by so far, and by more than 10 limits or, with fixed steps,
-/// 1 % of the way of the body that goes farthest, the first is wrong (`disagree`); also where one of its peaks is off
-/// by 10 % and by 5 times as much as that of the third.
+/// 1 % of the way of the body that goes farthest, the first is wrong (`disagree`); also where one of its means or
+/// works is off by 10 %, or a largest value by half, and by 5 times as much as that of the third: a step that goes over
+/// a load has nothing of its peak, while one of vibrations may be one part or another of them.
 void judge(Verification& verification, const RunResult& run, const RunResult& second, const RunResult& third,
            const VerificationRules& rules);
 

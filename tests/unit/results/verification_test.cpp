@@ -110,6 +110,39 @@ TEST(Verification, PeaksDecideWherePositionsDoNot) {
   EXPECT_EQ(judged_peaks(32.9, 5017.0, 3000.0), Agreement::err);
 }
 
+// Steps that follow a vibration, and a method that damps it, have other peaks of it at positions that agree.
+TEST(Verification, ALargestValueThatIsOffByAFifthIsDoubtfulAndAMeanDisagrees) {
+  const ResultTable rows = moving(smooth_motion);
+  const auto judged_figure = [&](const char* name, double first, double second) {
+    const RunResult a{&rows, {{name, first}}}, b{&rows, {{name, second}}};
+    Verification v = compare_runs(a, b, rules(1e-6));
+    if (v.agreement != Agreement::agree) judge(v, a, b, b, rules(1e-6));
+    return v.agreement;
+  };
+  EXPECT_EQ(judged_figure("joint B max |F|", 8.7, 7.0), Agreement::err);
+  EXPECT_EQ(judged_figure("joint B max |F|", 8.7, 4.0), Agreement::disagree);
+  EXPECT_EQ(judged_figure("joint B rms |F|", 8.7, 7.0), Agreement::disagree);
+}
+
+TEST(Verification, LengthsThatPositionsMayErrByAndForcesOfRoundingAreNone) {
+  const ResultTable rows = moving(smooth_motion);
+  const auto agree = [&](const char* name, double value) {
+    VerificationRules by = rules(1e-6);
+    by.size = 0.5, by.energy = 2.0, by.length = 3e-6;
+    const RunResult a{&rows, {{name, value}}}, b{&rows, {{name, 1.4 * value}}};
+    return compare_runs(a, b, by).agreement == Agreement::agree;
+  };
+  EXPECT_TRUE(agree("path P max error", 3.5e-15));
+  EXPECT_TRUE(agree("path P max error", 2e-6));
+  EXPECT_FALSE(agree("path P max error", 2e-5));
+  EXPECT_TRUE(agree("joint B max delta", 1e-8));
+  EXPECT_FALSE(agree("joint B max delta", 2e-5));
+  EXPECT_TRUE(agree("joint B rms |F|", 1e-9));
+  EXPECT_FALSE(agree("joint B rms |F|", 1e-7));
+  EXPECT_TRUE(agree("driver d max |torque|", 1e-9));
+  EXPECT_FALSE(agree("driver d max |torque|", 1e-7));
+}
+
 // A parallelogram at constant speed: its driver holds the difference of torques that cancel.
 // A load on a driven mechanism moves nothing elsewhere. What comes and goes leaves no work, whatever is left of it.
 TEST(Verification, WorkCountsWhereItIsPartOfTheEnergyThatWasMoved) {
