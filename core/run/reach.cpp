@@ -24,7 +24,7 @@ bool holds_origins(const JointElement& element, Space space) {
   if (element.gear >= 0 || element.is_force) return false;
   MarkerKinematics marker{};
   std::ranges::copy(no_rotation, marker.rotation);
-  return free_slides(element.ideal(), element.ideal_layout(), marker, marker) == (space == Space::planar ? 1 : 0);
+  return ways_of_origin(element.ideal(), element.ideal_layout(), marker, marker) == (space == Space::planar ? 1 : 0);
 }
 
 }  // namespace

@@ -21,17 +21,25 @@ int free_directions(const Rows& rows, Eigen::Vector3d& direction) {
   return free;
 }
 
+/// Of rows of unit vectors and of levers, in which less than 1e-9 is rounding.
+int rank_of(const Eigen::MatrixXd& rows) {
+  const double largest = rows.size() > 0 ? rows.cwiseAbs().maxCoeff() : 0.0;
+  if (!(largest > 1e-9)) return 0;
+  return static_cast<int>(Eigen::FullPivLU<Eigen::MatrixXd>(rows).setThreshold(1e-9 / largest).rank());
+}
+
 Rows slide_rows(const JointJacobian& jacobian) { return jacobian.middleCols<3>(6); }
 
 }  // namespace
 
-std::optional<int> free_slides(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
-                               const MarkerKinematics& b) {
+// Of all free motions of the second body those that leave its origin where it is are turns alone.
+std::optional<int> ways_of_origin(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                                  const MarkerKinematics& b) {
   if (layout.constraint_rows == 0) return 3;
   const auto jacobian = joint_jacobian(joint, layout.constraint_rows, a, b);
   if (!jacobian) return std::nullopt;
-  Eigen::Vector3d direction;
-  return free_directions(slide_rows(*jacobian), direction);
+  const int motions = 6 - rank_of(jacobian->rightCols<6>()), turns = 3 - rank_of(jacobian->rightCols<3>());
+  return motions - turns;
 }
 
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,

@@ -21,8 +21,9 @@ struct JointFreedom {
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                            const MarkerKinematics& b);
 
-/// Its `slides` alone; of a planar joint with the one across the plane. Nothing where the joint fails.
-std::optional<int> free_slides(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
-                               const MarkerKinematics& b);
+/// In how many directions the second origin may move against the first, whether the joint turns with it, as a nut on a
+/// screw does, or not; of a planar joint with the one across the plane. Nothing where the joint fails.
+std::optional<int> ways_of_origin(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
+                                  const MarkerKinematics& b);
 
 }  // namespace freeplay

@@ -33,6 +33,29 @@ TEST(Reach, IsTheSumOfLengthsAlongTheChain) {
   EXPECT_TRUE(std::isinf(far[3])) << "it slides as far as it likes";
 }
 
+// A nut goes along its screw as it turns; a ball holds its origin however it turns.
+TEST(Reach, SetsNoLimitToWhatSlidesAsItTurns) {
+  const auto model = test::load(R"(freeplay: 1
+space: spatial
+bodies:
+  nut: {mass: 1 kg, inertia: [1, 1, 1], com: [0.01, 0, 0]}
+  hung: {mass: 1 kg, inertia: [1, 1, 1], com: [0.2, 0, 0]}
+  turned: {mass: 1 kg, inertia: [1, 1, 1], com: [0.1, 0, 0]}
+  sleeve: {mass: 1 kg, inertia: [1, 1, 1]}
+joints:
+  S: {type: screw, between: [ground, nut], lead: 5 mm}
+  B: {type: spherical, between: [ground, hung]}
+  R: {type: revolute, between: [ground, turned]}
+  C: {type: cylindrical, between: [ground, sleeve]}
+simulation: {end: 1 s, step: 1 ms}
+)");
+  const std::vector<double> far = reach(*model);
+  EXPECT_TRUE(std::isinf(far[0]));
+  EXPECT_NEAR(far[1], 0.2, 1e-12);
+  EXPECT_NEAR(far[2], 0.1, 1e-12);
+  EXPECT_TRUE(std::isinf(far[3]));
+}
+
 TEST(Reach, CountsTenTimesTheClearanceOfPlayWithoutRadii) {
   const auto model =
       test::load(test::replaced(chain, "PLAY", ", clearance: {radial_clearance: 0.01, contact: {law: hertz, K: 1e8}}"));
