@@ -39,9 +39,11 @@ std::vector<InputActivity::Unresolved> InputActivity::look_closer(double least) 
   std::vector<Unresolved> left;
   for (Formula& formula : formulas_) {
     const int order = derivative(formula.sharp == CornerKind::load, formula.unit == Unit::other);
+    const bool cuts_forms = formula.sharp == CornerKind::load || formula.bends > 0;  // see resolved_formula()
     for (double from = start_;;) {
       const double apart = formula.shortest / samples_per_change;
-      const auto change = UnseenChange::of(*formula.expression, from, end_, apart, order);
+      const auto change =
+          UnseenChange::of(*formula.expression, from, end_, apart, order, cuts_forms ? quick(formula.sharp) : 0.0);
       if (!change || !has_no_rate(*formula.expression, start_, end_, change->time, apart)) break;
       if (formula.shortest <= least) {
         left.push_back(

@@ -5,8 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "base/formula_course.h"
-
 namespace freeplay {
 namespace {
 
@@ -16,6 +14,7 @@ constexpr double slow_enough = 0.5;       // rate times the length of four steps
 constexpr long enough_work = 20'000'000;  // instructions of bounds
 constexpr double shortest = 1e-12;        // of a step: spans that are not halved any more
 constexpr double same_time = 1e-15;       // of times: those closer are one
+constexpr double beside_corner = 8.0;     // of these: there the side of a corner is known
 constexpr int parts = 64;                 // of a step, to see how far a change goes
 constexpr double fewest_looks = 8.0;      // at a step
 constexpr double enough_looks = 1e6;
@@ -203,8 +202,41 @@ std::optional<double> UnseenChange::hidden(const Expression& formula, FormulaSid
   return hidden(formula, sides, window, {middle, span.high});
 }
 
+std::optional<double> UnseenChange::inside(const Expression& formula, FormulaSides& sides, const Window& window) const {
+  const FormulaSides::Span span{window.begin, window.end};
+  const bool bends = sides.range(span).acceleration.is_finite();
+  const std::optional<double> found = bends ? between(formula, window) : std::nullopt;
+  return found ? found : hidden(formula, sides, window, span);
+}
+
+// In four steps from t, in which corners lie: from each to the next, or four steps before the first and after the last
+// where none is as near.
+std::optional<UnseenChange::Found> UnseenChange::between_corners(const Expression& formula, FormulaCourse& course,
+                                                                 FormulaSides& sides, double t) const {
+  const double length = 4.0 * step_;
+  const double side = beside_corner * same_time * std::max(std::abs(from_), std::abs(to_));
+  double end = std::min(course.next_corner(t, t + length), to_), begin = std::max(from_, end - length);
+  for (const Corner& corner : course.corners()) {
+    if (corner.time < end) begin = std::max(begin, corner.time);
+  }
+  while (sides.work() < enough_work && course.work() < enough_work) {
+    if (const double from = begin + side, to = end - side; from < to) {
+      UnseenChange part(from_, to_, 0.25 * (to - from), derivative_);
+      part.low_ = low_, part.high_ = high_;
+      Window window;
+      const bool looked = part.look(formula, from, window);
+      const std::optional<double> found = looked ? part.inside(formula, sides, window) : std::nullopt;
+      if (found) return part.measured(formula, window, *found);
+    }
+    if (end >= t + length || end >= to_) break;
+    begin = end;
+    end = std::min({course.next_corner(begin, begin + length), begin + length, to_});
+  }
+  return {};
+}
+
 std::optional<UnseenChange::Found> UnseenChange::of(const Expression& formula, double from, double to, double step,
-                                                    int derivative) {
+                                                    int derivative, double cut_form) {
   if (!formula.depends_on_time()) return {};
   UnseenChange change(from, to, step, derivative);
   FormulaCourse course(formula, from, to);
@@ -221,11 +253,10 @@ std::optional<UnseenChange::Found> UnseenChange::of(const Expression& formula, d
     double span = length;
     if (quiet(t, span)) {
       while (t + span < to && quiet(t, 2.0 * span)) span *= 2.0;
+    } else if (length <= cut_form && course.next_corner(t, t + length) < std::min(t + length, to)) {
+      if (const auto found = change.between_corners(formula, course, sides, t)) return found;
     } else if (change.look(formula, t, window)) {
-      const bool bends = sides.range({t, t + length}).acceleration.is_finite();
-      std::optional<double> found = bends ? change.between(formula, window) : std::nullopt;
-      if (!found) found = change.hidden(formula, sides, window, {t, t + length});
-      if (found) return change.measured(formula, window, *found);
+      if (const auto found = change.inside(formula, sides, window)) return change.measured(formula, window, *found);
     }
     t += span;
   }

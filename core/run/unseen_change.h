@@ -8,6 +8,7 @@
 #include <span>
 
 #include "base/expression.h"
+#include "base/formula_course.h"
 #include "base/formula_sides.h"
 #include "model/time_table.h"
 
@@ -23,8 +24,10 @@ class UnseenChange {
   };
 
   /// The first of [from, to] in steps of `step` [s]; `derivative` is 0, 1 or 2. Formulas are bounded over spans of
-  /// time, so that no change is too short, until a bounded amount of work is done.
-  static std::optional<Found> of(const Expression& formula, double from, double to, double step, int derivative);
+  /// time, so that no change is too short, until a bounded amount of work is done. Between two corners that are no more
+  /// than `cut_form` and four steps apart steps are a quarter of that, and end at both [s].
+  static std::optional<Found> of(const Expression& formula, double from, double to, double step, int derivative,
+                                 double cut_form = 0.0);
   /// Of tables by their points and the middles between them.
   static std::optional<Found> of(const TimeTable& table, double from, double to, double step, int derivative);
   /// Of signals that can be looked at alone: fills them at a time; false where it cannot.
@@ -59,6 +62,9 @@ class UnseenChange {
   Found measured(const Function& function, const Window& window, double t) const;
   std::optional<double> hidden(const Expression& formula, FormulaSides& sides, const Window& window,
                                const FormulaSides::Span& span) const;
+  std::optional<double> inside(const Expression& formula, FormulaSides& sides, const Window& window) const;
+  std::optional<Found> between_corners(const Expression& formula, FormulaCourse& course, FormulaSides& sides,
+                                       double t) const;
   bool is_slow(const Interval& second, double length) const;
 
   double from_, to_, step_;
