@@ -278,6 +278,41 @@ void Corners::format_declared(double step, std::span<const std::string> said) {
   }
 }
 
+namespace {
+
+/// What is wrong with a step, in words of a warning and of a verdict, and how long it may be.
+struct Unseen {
+  std::string warning, message;
+  double wanted, value, limit;
+};
+
+Unseen words_of(const InputActivity::Unresolved& input, double step) {
+  const double apart = input.to - input.from;
+  if (input.corners) {
+    return {
+        fmt::format("it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over what "
+                    "it does between them",
+                    input.from, input.to, step),
+        fmt::format("has corners {:.3g} s apart, closer than the step of {:.3g} s", apart, step), 0.1 * apart, apart,
+        step};
+  }
+  if (const JumpError& error = input.jumps; error.jumps > 0) {
+    return {fmt::format("it jumps inside {} steps of {:.3g} s, which take a jump for one in their middle: that makes "
+                        "{:.0f} % of the way that it would move a free mass",
+                        error.jumps, step, 100.0 * error.part),
+            fmt::format("jumps inside {} steps of {:.3g} s, which are {:.0f} % off what it does", error.jumps, step,
+                        100.0 * error.part),
+            0.1 * step * InputActivity::off_by_jumps / error.part, error.part, InputActivity::off_by_jumps};
+  }
+  return {fmt::format("it changes at t = {:.9g} s for some {:.2g} s, which the step of {:.3g} s goes over",
+                      input.from + 0.5 * apart, apart, step),
+          fmt::format("changes at t = {:.9g} s in a way that steps of {:.3g} s do not show", input.from + 0.5 * apart,
+                      step),
+          0.25 * apart, apart, step};
+}
+
+}  // namespace
+
 void Corners::format_unresolved() {
   if (run_.adaptive) return format_too_short();
   const double step = std::min(run_.settings.step, run_.settings.interval);
@@ -285,28 +320,15 @@ void Corners::format_unresolved() {
   for (const InputActivity::Unresolved& input : InputActivity(run_.system, run_.settings.interval, 0.0)
                                                     .unresolved_by(step, point(run_.accepted), run_.e_accepted)) {
     const std::string element = said.emplace_back(fmt::format("{} '{}'", input.section, *input.name));
-    const double apart = input.to - input.from, wanted = (input.corners ? 0.1 : 0.25) * apart;
-    const std::string what =
-        input.corners
-            ? fmt::format(
-                  "it has corners at {:.9g} s and {:.9g} s, closer than the step of {:.3g} s, which goes over "
-                  "what it does between them",
-                  input.from, input.to, step)
-            : fmt::format("it changes at t = {:.9g} s for some {:.2g} s, which the step of {:.3g} s goes over",
-                          input.from + 0.5 * apart, apart, step);
-    run_.warnings.push_back(
-        fmt::format("{}: {}; ask for an accuracy instead, or for steps of {:.2g} s", element, what, wanted));
-    run_.outcome.doubts.push_back(
-        {.id = "unresolved-input",
-         .level = Trust::doubtful,
-         .message =
-             input.corners
-                 ? fmt::format("{} has corners {:.3g} s apart, closer than the step of {:.3g} s", element, apart, step)
-                 : fmt::format("{} changes at t = {:.9g} s in a way that steps of {:.3g} s do not show", element,
-                               input.from + 0.5 * apart, step),
-         .element = element,
-         .value = apart,
-         .limit = step});
+    const Unseen words = words_of(input, step);
+    run_.warnings.push_back(fmt::format("{}: {}; ask for an accuracy instead, or for steps of {:.2g} s", element,
+                                        words.warning, words.wanted));
+    run_.outcome.doubts.push_back({.id = "unresolved-input",
+                                   .level = Trust::doubtful,
+                                   .message = fmt::format("{} {}", element, words.message),
+                                   .element = element,
+                                   .value = words.value,
+                                   .limit = words.limit});
   }
   format_declared(step, said);
 }

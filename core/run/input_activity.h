@@ -10,6 +10,7 @@
 
 #include "base/formula_course.h"
 #include "run/idle_loads.h"
+#include "run/jump_error.h"
 #include "run/light_loads.h"
 #include "run/step_resolution.h"
 #include "run/unseen_change.h"
@@ -65,9 +66,12 @@ class InputActivity {
     const std::string* name;
     double from, to;  ///< its closest two corners, or where it changes in between [s]
     bool corners;
+    JumpError jumps{};  ///< else, with `jumps`, what they make of it
   };
-  /// To be asked before any step is: those with corners closer than `step`, and those that do something between the
-  /// ends of steps that these do not show. Joints are looked at as `here` has their markers, variables and history.
+  /// To be asked before any step is: those with corners closer than `step`, those that do something between the
+  /// ends of steps that these do not show, and loads that jump inside of steps so that these are off by a tenth. Joints
+  /// are looked at as `here` has their markers, variables and history.
+  static constexpr double off_by_jumps = 0.1;
   std::vector<Unresolved> unresolved_by(double step, const Point& here, const Evaluation& e);
 
   template <class Self, class Archive>

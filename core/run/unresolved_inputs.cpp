@@ -104,6 +104,10 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step,
     }
     add_corners(formula.section, formula.name, times);
     add_change(formula.section, formula.name, *formula.expression, acting(formula));
+    if (formula.sharp != CornerKind::load || known(formula.name)) continue;
+    const auto error = jump_error(*formula.expression, times, {start_, end_, system_.model().settings.interval, step});
+    if (error && error->part > off_by_jumps)
+      found.push_back({formula.section, formula.name, start_, end_, false, *error});
   }
   for (const Table& table : tables_) add_change("driver", table.name, *table.table, acting(table));
   for (const TellingJoint& telling : telling_) {

@@ -37,5 +37,29 @@ TEST(JumpingLoads, StraightLinesBetweenCornersThatAreFoundAreNotDoubted) {
   }
 }
 
+/// By how much steps are off, as their verdict says; 0 where it says nothing.
+double off(const std::string& load, const std::string& simulation) {
+  const auto run = pushed_by(load, simulation);
+  for (const TrustReason& doubt : run.outcome().doubts) {
+    if (doubt.message.find("jumps inside") != std::string::npos) return doubt.value;
+  }
+  return 0.0;
+}
+
+// From -30 N to 30 N in no time, and back by ramps.
+TEST(JumpingLoads, StepsOfOneSizeThatGoOverManyJumpsAreDoubted) {
+  const std::string load = "30*sign(sin(77*t))*smooth(cos(77*t),0.99,0.995)";
+  EXPECT_GT(off(load, "end: 3, step: 0.25 ms, integrator: generalized-alpha, output: {interval: 60 ms}"), 0.2);
+  EXPECT_EQ(off(load, "end: 3, step: 5 us, integrator: generalized-alpha, output: {interval: 60 ms}"), 0.0);
+  EXPECT_EQ(off(load, "end: 3, accuracy: 1 um, output: {interval: 60 ms}"), 0.0);
+}
+
+// Jumps up and down that steps end at, or that are off by as much as each other.
+TEST(JumpingLoads, StepsThatEndAtJumpsOrAreOffByTheSameAtEachAreNot) {
+  EXPECT_EQ(off("10*sign(sin(100*pi*t))", "end: 1, step: 0.1 ms"), 0.0);
+  EXPECT_EQ(off("10*sign(sin(100*pi*(t-0.00003)))", "end: 1, step: 0.1 ms"), 0.0);
+  EXPECT_EQ(off("if(t < 0.50003, 0, 10)", "end: 1, step: 0.1 ms"), 0.0);
+}
+
 }  // namespace
 }  // namespace freeplay
