@@ -7,6 +7,7 @@
 
 #include "base/index.h"
 #include "results/load_judgement.h"
+#include "results/path_judgement.h"
 #include "results/singular_judgement.h"
 #include "run/lasting_blows.h"
 #include "run/motion_period.h"
@@ -424,6 +425,7 @@ void judge(const RunRecord& record, Verdict& verdict) {
   judge_contacts(record, verdict);
   judge_steps_per_impact(record, verdict);
   judge_reach(record, verdict);
+  judge_paths(record, verdict);
   judge_singular(record, verdict);
   judge_largest_force(record, verdict);
   judge_loads(record, verdict);

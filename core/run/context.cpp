@@ -74,6 +74,7 @@ RunContext::RunContext(std::shared_ptr<const RunEquations> all_equations, const 
       events(system, evaluations, adaptive, between, e_between),
       sleeping(system.joints(), system.forces(), evaluations),
       kinks(model),
+      path_edges(system),
       idle_loads(system),
       watch(system, all_channels, adaptive),
       inner(at(system.layout().nv()), at(system.layout().nz() + flows)),

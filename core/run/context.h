@@ -15,6 +15,7 @@
 #include "run/idle_loads.h"
 #include "run/inner_motion.h"
 #include "run/outcome.h"
+#include "run/path_edges.h"
 #include "run/sleeping_joints.h"
 #include "run/step_events.h"
 #include "run/watch.h"
@@ -67,6 +68,7 @@ struct RunContext {
   StepEvents events;
   SleepingJoints sleeping;
   DriveKinks kinks;  ///< of prescribed motions
+  PathEdges path_edges;
   IdleLoads idle_loads;
   RunWatch watch;
   InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside

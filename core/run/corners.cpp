@@ -79,6 +79,7 @@ bool Corners::next_corner(double dt, double& corner) {
 }
 
 bool Corners::resolve_inputs(double& dt) {
+  if (run_.adaptive) dt = run_.path_edges.longest_step(run_.accepted.t(), dt);
   if (!inputs_) return true;
   run_.idle_loads.look(run_.solver.rows(), run_.e_accepted);
   dt = inputs_->resolved(run_.accepted.t(), dt);

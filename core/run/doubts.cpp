@@ -81,6 +81,9 @@ void RunDoubts::note_motion() {
 }
 
 void RunDoubts::judge_motion() {
+  for (TrustReason& reason : run_.path_edges.doubts(run_.outcome.time, run_.adaptive ? 0.0 : run_.settings.step)) {
+    run_.outcome.doubts.push_back(std::move(reason));
+  }
   if (swings_) run_.outcome.slowest = slow_.slowest(run_.outcome.time, run_.accepted.v(), run_.accepted.a());
   const FastMotion::Fewest fewest = motion_.fewest();
   const double time = run_.outcome.time - run_.settings.start, size = run_.system.size();

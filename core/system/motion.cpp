@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/format_into.h"
+#include "system/leg_edges.h"
 #include "system/path_place.h"
 
 namespace freeplay {
@@ -55,6 +56,18 @@ bool Motions::entry_follows(int kinematics) const {
 const Leg* Motions::leg(int driver) const {
   const std::optional<Leg>& leg = legs_[static_cast<std::size_t>(driver)];
   return leg ? &*leg : nullptr;
+}
+
+std::vector<PathEdge> Motions::edges(double until) const {
+  std::vector<PathEdge> found;
+  for (std::size_t d = 0; d < legs_.size(); ++d) {
+    if (!legs_[d]) continue;
+    const std::vector<PathEdge> of_leg =
+        leg_edges(model_, static_cast<int>(d), *legs_[d], model_.settings.start, until);
+    found.insert(found.end(), of_leg.begin(), of_leg.end());
+  }
+  if (followed_) found.insert(found.end(), followed_->edges().begin(), followed_->edges().end());
+  return found;
 }
 
 void Motions::set_start(int driver, double coordinate) { starts_[static_cast<std::size_t>(driver)] = coordinate; }

@@ -4,6 +4,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "freeplay/parameter.h"
@@ -20,7 +22,18 @@ struct MotionFault {
   int kinematics = -1;  ///< index into Model::kinematics, or -1
   int force = -1;       ///< index into Model::forces, or -1
   const char* id = "";  ///< "ik-unreachable", "bad-expression", "bad-number"
-  char text[256];
+  char text[512];
+};
+
+/// An instant at which a path comes closest to a singular place of the mechanism that follows it, so that a very small
+/// part of the lengths decides how it goes on.
+struct PathEdge {
+  int kinematics = 0;     ///< index into Model::kinematics
+  double time = 0.0;      ///< [s]
+  double distance = 0.0;  ///< of the path from the edge of what is reached [m]
+  double width = 0.0;     ///< how long it is as close [s]
+  bool jumps = false;     ///< speeds of drivers jump there
+  std::string joints{};   ///< "joint 'elbow' (at 0.02 deg)": what turns there without moving the frame
 };
 
 /// Drivers that follow a path through the whole mechanism instead of a leg of their own.
@@ -36,6 +49,7 @@ class FollowedMotion {
   virtual bool evaluate(double t, Span<TimeValue> out, Work& work, MotionFault& fault) const noexcept = 0;
   /// Pose of the frame of an inverse-kinematics entry, components that the path leaves open included.
   virtual bool frame(int kinematics, double t, PathPose& pose, Work& work, MotionFault& fault) const noexcept = 0;
+  virtual std::span<const PathEdge> edges() const = 0;
 };
 
 /// Work space of Motions. Allocates when it is first used.
@@ -72,6 +86,8 @@ class Motions {
   bool modulo_turns(int driver) const;
   /// The closed form of a driver by inverse kinematics, or null.
   const Leg* leg(int driver) const;
+  /// Where paths come close to the edge of what the mechanism reaches, from the start of the run to a time.
+  std::vector<PathEdge> edges(double until) const;
   /// Poses of the bodies of a driver's leg at time t; false when out of reach.
   bool leg_pose(int driver, double t, LegPose& pose, MotionFault& fault) const noexcept;
 

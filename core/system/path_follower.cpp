@@ -18,9 +18,6 @@ constexpr int most_iterations = 12;
 constexpr double last_correction = 1e-9;  // what is left is its square
 constexpr double residual_limit = 1e-9;   // rows that contradict each other leave more
 constexpr double longest_way = 0.1;       // from a prediction to the solution
-constexpr double same_place = 1e-8;       // of solutions that were reached on two ways
-constexpr int fewest_pieces = 128;        // of a run
-constexpr double shortest_piece = 1e-9;   // of a run
 
 }  // namespace
 
@@ -57,41 +54,15 @@ PathFollower::PathFollower(const System& closed, std::span<const double> q, std:
   MotionFault fault;
   if (solve(start.t(), start, work, fault) != Found::yes) {
     const InverseKinematics& entry = model_.kinematics[at(paths_.front().kinematics)];
+    if (nearness(work) < singular_start) lost_words_ = words_of_place(edge_at(start));
     fail(start.t(), fault);
     throw Error(Error::Category::input, fault.id, fault.text, entry.path_location);
   }
   way_.push_back(work.state);
+  near_.push_back(nearness(work));
+  clear_ = near_.front();
   find_way();
-}
-
-// Pieces grow while their ends lead to the same place half-way, and shrink where they do not.
-void PathFollower::find_way() {
-  const double start = model_.settings.start, end = model_.settings.end;
-  const double longest = (end - start) / fewest_pieces;
-  Work work(system_, rows()), other(system_, rows());
-  MotionFault fault;
-  for (double piece = longest; way_.back().t() < end;) {
-    const double t = way_.back().t();
-    double next = t + piece;
-    if (next > end - 1e-3 * piece) next = end;
-    if (solve(next, way_.back(), work, fault) == Found::yes && certain(way_.back(), work.state, other)) {
-      way_.push_back(work.state);
-      piece = std::min(2.0 * piece, longest);
-      continue;
-    }
-    piece *= 0.5;
-    if (piece >= shortest_piece * (end - start)) continue;
-    lost_ = t;
-    return;
-  }
-}
-
-bool PathFollower::certain(const State& left, const State& right, Work& work) {
-  const double middle = 0.5 * (left.t() + right.t());
-  MotionFault fault;
-  if (solve(middle, left, work, fault) != Found::yes) return false;
-  const std::vector<double> q(work.state.q().begin(), work.state.q().end());
-  return solve(middle, right, work, fault) == Found::yes && distance(q, work.state.q()) <= same_place;
+  note_edges();
 }
 
 double PathFollower::distance(std::span<const double> a, std::span<const double> b) const {
@@ -199,6 +170,7 @@ void PathFollower::fail(double t, MotionFault& fault) const noexcept {
   char* to = format_into(fault.text, end, "the mechanism cannot follow the path at t = {:.9g} s{}", t,
                          several ? " (of this entry or another)" : "");
   to = write_place_on_path(model_, fault.kinematics, t, to, end);
+  to = format_into(to, end, "{}", lost_words_);
   *to = '\0';
 }
 
@@ -207,7 +179,7 @@ std::unique_ptr<FollowedMotion::Work> PathFollower::make_work() const {
 }
 
 bool PathFollower::reach(double t, Work& work, MotionFault& fault) const noexcept {
-  const Found found = t > lost_ + shortest_piece * (model_.settings.end - model_.settings.start)
+  const Found found = t > lost_ + shortest_path_piece * (model_.settings.end - model_.settings.start)
                           ? Found::no
                           : solve(t, nearest(t), work, fault);
   if (found == Found::no) fail(t, fault);
@@ -216,8 +188,21 @@ bool PathFollower::reach(double t, Work& work, MotionFault& fault) const noexcep
 
 bool PathFollower::evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& own,
                             MotionFault& fault) const noexcept {
+  for (const PathBridge& bridge : bridges_) {
+    if (!bridge.covers(t)) continue;
+    for (std::size_t i = 0; i < drivers_.size(); ++i) {
+      const Jet value = bridge.driver(i, t);
+      out[at(drivers_[i])] = {value.value, value.rate, value.acceleration};
+    }
+    return true;
+  }
   Work& work = static_cast<Work&>(own);
   if (!reach(t, work, fault)) return false;
+  evaluate_drivers(work, out);
+  return true;
+}
+
+void PathFollower::evaluate_drivers(const Work& work, Span<TimeValue> out) const noexcept {
   const std::size_t width = at(system_.layout().body_velocities());
   for (const int d : drivers_) {
     const int j = model_.drivers[at(d)].joint;
@@ -235,13 +220,22 @@ bool PathFollower::evaluate(double t, Span<TimeValue> out, FollowedMotion::Work&
       }
     }
   }
-  return true;
 }
 
 bool PathFollower::frame(int kinematics, double t, PathPose& pose, FollowedMotion::Work& own,
                          MotionFault& fault) const noexcept {
+  for (const PathBridge& bridge : bridges_) {
+    if (!bridge.covers(t)) continue;
+    bridge.frame(at(kinematics), t, model_.space == Space::spatial, pose);
+    return true;
+  }
   Work& work = static_cast<Work&>(own);
   if (!reach(t, work, fault)) return false;
+  pose_of(kinematics, work, pose);
+  return true;
+}
+
+void PathFollower::pose_of(int kinematics, const Work& work, PathPose& pose) const noexcept {
   const int marker = model_.kinematics[at(kinematics)].marker;
   const BodyId body = model_.markers[at(marker)].body;
   const Evaluation& e = work.e;
@@ -255,14 +249,13 @@ bool PathFollower::frame(int kinematics, double t, PathPose& pose, FollowedMotio
   for (std::size_t i = 0; i < 3; ++i) pose[i] = {k.position[i], k.velocity[i], acceleration[i]};
   if (model_.space == Space::planar) {
     pose[2] = {system_.markers().angle(marker, work.state.q()), k.angular_velocity[2], acceleration[5]};
-    return true;
+    return;
   }
   std::copy_n(k.rotation, 9, pose.turning.rotation.begin());
   std::copy_n(k.angular_velocity, 3, pose.turning.velocity.begin());
   std::copy_n(acceleration + 3, 3, pose.turning.acceleration.begin());
   const std::array<Jet, 3> angles = roll_pitch_yaw_of(pose.turning);
   std::ranges::copy(angles, pose.numbers.begin() + 3);
-  return true;
 }
 
 }  // namespace freeplay
