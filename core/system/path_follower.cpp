@@ -62,6 +62,9 @@ PathFollower::PathFollower(const System& closed, std::span<const double> q, std:
   near_.push_back(nearness(work));
   clear_ = near_.front();
   find_way();
+  // Speeds at such a start are rounding, from which the way soon gets lost.
+  if (lost_words_.empty() && near_.front() < singular_start * clear_)
+    lost_words_ = words_of_place(edge_at(way_.front()));
   note_edges();
 }
 
