@@ -15,7 +15,7 @@ namespace freeplay {
 /// places that are known, as the sides of a tent beside its top.
 class FormulaCorners {
  public:
-  static std::vector<double> of(const Formula& formula, double least, double most) {
+  [[gnu::cold]] static std::vector<double> of(const Formula& formula, double least, double most) {
     FormulaCorners own(formula);
     if (own.count_ == 0 || own.straight_ones()) return own.found_;
     for (double to = least; to < most; to *= 2.0) {
@@ -45,7 +45,7 @@ class FormulaCorners {
   }
 
   /// Notes where straight ones pass zero, as x - 0.1 in abs(x - 0.1) and at points of a table. Whether all are.
-  bool straight_ones() {
+  [[gnu::cold]] bool straight_ones() {
     const std::vector<double> at_zero = decide(0.0), at_one = decide(1.0), below = decide(-0.7), above = decide(3.1);
     bool all = true;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -60,7 +60,7 @@ class FormulaCorners {
   }
 
   /// One more look between all neighbours. False where nothing is new.
-  bool seek() {
+  [[gnu::cold]] bool seek() {
     std::sort(places_.begin(), places_.end());
     std::vector<double> fresh;
     std::vector<double> before = decide(places_.front());

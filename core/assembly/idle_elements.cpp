@@ -30,7 +30,7 @@ constexpr double least_beyond = 0.01;    // rad, or of the size of the model
 constexpr double in_turns = 0.5 / std::numbers::pi;
 constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
 constexpr double same_ratio = 1e-6;     // of strands and of a gear between their wheels
-constexpr double most_strain = 0.1;     // of strands by drivers of both their wheels: no belt bears a tenth
+constexpr double most_strain = 0.1;     // of strands by drivers of both their wheels: none bears a tenth
 constexpr int looks_of_run = 256;       // at what drivers prescribe
 
 class Elements {

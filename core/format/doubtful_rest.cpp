@@ -130,6 +130,7 @@ class RestDoubts {
       const double t = settings_.start + (end - settings_.start) * static_cast<double>(i) / 128.0;
       if (!table.evaluate(t, jet, failure) || jet.value != first.value) return;
     }
+    if (std::ranges::all_of(table.values(), [&](double value) { return value == first.value; })) return;
     waiting.zero = first.value == 0.0, waiting.begins = leaving(table, settings_.start, first.value);
     if (!(waiting.begins >= end && waiting.begins < unbounded)) return;
     // What has changed before the run does not begin to.

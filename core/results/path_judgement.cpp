@@ -21,7 +21,7 @@ double room_of(const RunRecord& record) {
   bool yields = false;
   for (const JointElement& joint : record.model.joints) {
     if (joint.has_play) play += joint.layout.clearance;
-    // What holds without rows, such as a bushing, holds by yielding.
+    // What holds without rows holds by yielding.
     yields = yields || (joint.has_play && !(joint.layout.clearance > 0.0)) || joint.layout.constraint_rows == 0;
   }
   const double size = record.extremes.size;

@@ -19,7 +19,7 @@ struct HiddenChange {
   /// Whether that is more than steps of one size need not show.
   bool counts() const;
   /// Adds a warning and the doubt `unresolved-input` of what is called `element`.
-  void say(RunContext& run, const std::string& element) const;
+  [[gnu::cold]] void say(RunContext& run, const std::string& element) const;
 };
 
 }  // namespace freeplay

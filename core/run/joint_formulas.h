@@ -34,7 +34,7 @@ class JointFormulas {
   bool note_ends();
   void note_inside();
   /// Once a run in steps of one size is over: formulas that do more inside of steps than their ends show.
-  void format();
+  [[gnu::cold]] void format();
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

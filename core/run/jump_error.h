@@ -21,6 +21,7 @@ struct JumpError {
 /// A method of second order takes a jump for one in the middle of the step that it is in. What that leaves out or adds
 /// is carried on as speed, and adds up where many jumps fall so. Of the load `formula`, whose corners are `times`.
 /// Nothing where it has no value, does not jump, or there are too many steps to look at.
-std::optional<JumpError> jump_error(const Expression& formula, std::span<const double> times, const StepTimes& run);
+[[gnu::cold]] std::optional<JumpError> jump_error(const Expression& formula, std::span<const double> times,
+                                                  const StepTimes& run);
 
 }  // namespace freeplay

@@ -21,8 +21,8 @@ struct JointFreedom {
 JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                            const MarkerKinematics& b);
 
-/// In how many directions the second origin may move against the first, whether the joint turns with it, as a nut on a
-/// screw does, or not; of a planar joint with the one across the plane. Nothing where the joint fails.
+/// In how many directions the second origin may move against the first, whether the joint turns with it, as a nut on
+/// its thread does, or not; of a planar joint with the one across the plane. Nothing where the joint fails.
 std::optional<int> ways_of_origin(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                                   const MarkerKinematics& b);
 

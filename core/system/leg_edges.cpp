@@ -30,7 +30,7 @@ class LegOnPath {
     Jet x{}, y{}, crank{};
   };
 
-  Place at_time(double t) const {
+  [[gnu::cold]] Place at_time(double t) const {
     const Driver& driven = model_.drivers[at(driver_)];
     const InverseKinematics& entry = model_.kinematics[at(driven.kinematics)];
     PathPose pose;
@@ -53,7 +53,7 @@ class LegOnPath {
   }
 
   /// Whether the path between two places is what they say of the middle.
-  bool says(const Place& left, const Place& middle, const Place& right) const {
+  [[gnu::cold]] bool says(const Place& left, const Place& middle, const Place& right) const {
     const auto off = [&](const Place& from) {
       const double h = middle.t - from.t;
       const double x = from.x.value + h * (from.x.rate + 0.5 * h * from.x.acceleration) - middle.x.value;
@@ -63,7 +63,7 @@ class LegOnPath {
     return off(left) <= may_bend && off(right) <= may_bend;
   }
 
-  Place lowest(double from, double to) const {
+  [[gnu::cold]] Place lowest(double from, double to) const {
     constexpr double golden = 0.6180339887498949;
     Place a = at_time(to - golden * (to - from)), b = at_time(from + golden * (to - from));
     for (int i = 0; i < 60; ++i) {
@@ -77,7 +77,7 @@ class LegOnPath {
   }
 
   /// What is noted of a place where the leg is closest to the edge.
-  PathEdge edge(const Place& place, double around) const {
+  [[gnu::cold]] PathEdge edge(const Place& place, double around) const {
     PathEdge edge{.kinematics = model_.drivers[at(driver_)].kinematics, .time = place.t};
     const double sum = leg_.crank + leg_.coupler, difference = std::abs(leg_.crank - leg_.coupler);
     edge.distance = std::max(std::min(std::abs(sum - place.distance), std::abs(place.distance - difference)), 0.0);
@@ -93,7 +93,7 @@ class LegOnPath {
   }
 
  private:
-  bool speed_jumps(double t, double h) const {
+  [[gnu::cold]] bool speed_jumps(double t, double h) const {
     const auto jump = [&](double by) {
       const double turned = at_time(t + by).crank.value - at_time(t - by).crank.value;
       const double rate = std::abs(at_time(t + by).crank.rate - at_time(t - by).crank.rate);

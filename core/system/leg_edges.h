@@ -9,6 +9,6 @@ namespace freeplay {
 
 /// The instants between two times at which the leg of a driver comes close to being stretched or folded. `leg` is that
 /// of `driver`, whose path gives the whole pose.
-std::vector<PathEdge> leg_edges(const Model& model, int driver, const Leg& leg, double from, double to);
+[[gnu::cold]] std::vector<PathEdge> leg_edges(const Model& model, int driver, const Leg& leg, double from, double to);
 
 }  // namespace freeplay

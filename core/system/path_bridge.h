@@ -22,7 +22,7 @@ class PathBridge {
     std::vector<Jet> drivers{};
     std::vector<PathPose> frames{};
   };
-  PathBridge(End left, End right);
+  [[gnu::cold]] PathBridge(End left, End right);
 
   bool covers(double t) const { return t > left_.t && t < right_.t; }
   bool touches(double t) const { return t >= left_.t && t <= right_.t; }

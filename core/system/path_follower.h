@@ -31,7 +31,7 @@ class PathFollower final : public FollowedMotion {
  public:
   /// `closed` at the coordinates `q` with angles counted as in `h` stands on the paths at the start time. Throws
   /// Error{input} "ik-unreachable" when it cannot move along them from there.
-  PathFollower(const System& closed, std::span<const double> q, std::span<const double> h);
+  [[gnu::cold]] PathFollower(const System& closed, std::span<const double> q, std::span<const double> h);
 
   std::unique_ptr<FollowedMotion::Work> make_work() const override;
   bool evaluate(double t, Span<TimeValue> out, FollowedMotion::Work& own, MotionFault& fault) const noexcept override;
@@ -51,22 +51,22 @@ class PathFollower final : public FollowedMotion {
   };
   enum class Found { yes, no, fault };
 
-  void find_way();
+  [[gnu::cold]] void find_way();
   /// From the last solution to `next`, if the way there is certain and keeps away from singular places.
-  bool advance(double next, Work& work, Work& other);
+  [[gnu::cold]] bool advance(double next, Work& work, Work& other);
   /// Across a singular place that is about to come; false where the motion does not pass it smoothly.
-  bool bridge(Work& work);
-  PathBridge::End end_of_bridge(Work& work) const;
-  bool agrees(const PathBridge& bridge, double t, const State& from, Work& work) const;
-  void note_edges();
-  State closest(std::size_t place, double& near) const;
+  [[gnu::cold]] bool bridge(Work& work);
+  [[gnu::cold]] PathBridge::End end_of_bridge(Work& work) const;
+  [[gnu::cold]] bool agrees(const PathBridge& bridge, double t, const State& from, Work& work) const;
+  [[gnu::cold]] void note_edges();
+  [[gnu::cold]] State closest(std::size_t place, double& near) const;
   /// How far the rows in the last solution are from depending on each other: a number without unit.
-  double nearness(const Work& work) const;
+  [[gnu::cold]] double nearness(const Work& work) const;
   /// The same rows and columns without units.
-  Eigen::MatrixXd scaled_rows(const Work& work, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const;
-  PathEdge edge_at(const State& state) const;
-  std::string names_of_moved(const Eigen::VectorXd& motion, Work& work) const;
-  bool certain(const State& left, const State& right, Work& work);
+  [[gnu::cold]] Eigen::MatrixXd scaled_rows(const Work& work, Eigen::VectorXd& rows, Eigen::VectorXd& columns) const;
+  [[gnu::cold]] PathEdge edge_at(const State& state) const;
+  [[gnu::cold]] std::string names_of_moved(const Eigen::VectorXd& motion, Work& work) const;
+  [[gnu::cold]] bool certain(const State& left, const State& right, Work& work);
   Found solve(double t, const State& from, Work& work, MotionFault& fault) const noexcept;
   bool assemble(double t, Work& work, MotionFault& fault) const noexcept;
   int rows() const { return static_cast<int>(kept_.size() + paths_.size()); }

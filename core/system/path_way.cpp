@@ -2,12 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <Eigen/QR>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "linear/singular_values.h"
 #include "system/path_follower.h"
 
 namespace freeplay {
@@ -215,11 +216,11 @@ PathEdge PathFollower::edge_at(const State& state) const {
   PathEdge edge{.kinematics = paths_.front().kinematics, .time = state.t(), .distance = 0.0};
   if (!assemble(state.t(), work, fault)) return edge;
   Eigen::VectorXd row_scale, column_scale;
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled_rows(work, row_scale, column_scale),
-                                              Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::Index last = svd.singularValues().size() - 1;
-  const Eigen::VectorXd u = row_scale.asDiagonal() * svd.matrixU().col(last);
-  const Eigen::VectorXd v = column_scale.asDiagonal() * svd.matrixV().col(last);
+  const SingularValues svd =
+      singular_values(scaled_rows(work, row_scale, column_scale), SingularVectors::thin, SingularVectors::thin);
+  const Eigen::Index last = svd.sigma.size() - 1;
+  const Eigen::VectorXd u = row_scale.asDiagonal() * svd.u.col(last);
+  const Eigen::VectorXd v = column_scale.asDiagonal() * svd.v.col(last);
   edge.joints = names_of_moved(v, work);
   const auto along = [&](double factor) {
     for (std::size_t i = 0; i < work.state.v().size(); ++i)
@@ -239,7 +240,7 @@ PathEdge PathFollower::edge_at(const State& state) const {
   Eigen::Index most = 0;
   const double reach = of_paths.cwiseAbs().maxCoeff(&most) > 0.0 ? of_paths.norm() : 0.0;
   edge.kinematics = paths_[static_cast<std::size_t>(most)].kinematics;
-  const double lost = svd.singularValues()[last];
+  const double lost = svd.sigma[last];
   edge.distance = lost * system_.size();
   if (bend > 0.0 && reach > 0.0) edge.distance = std::min(edge.distance, 0.5 * lost * lost / (bend * reach));
   return edge;
@@ -264,7 +265,8 @@ std::string PathFollower::names_of_moved(const Eigen::VectorXd& motion, Work& wo
     }
     all.push_back({j, std::abs(rate) / (coordinate == Coordinate::angle ? 1.0 : system_.size())});
   }
-  std::ranges::stable_sort(all, std::greater{}, &Moved::rate);
+  std::ranges::sort(
+      all, [](const Moved& a, const Moved& b) { return std::pair(-a.rate, a.joint) < std::pair(-b.rate, b.joint); });
   std::string words;
   for (std::size_t i = 0; i < std::min(all.size(), most_names); ++i) {
     if (all[i].rate < moved * all.front().rate) break;

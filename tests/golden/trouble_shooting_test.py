@@ -34,6 +34,14 @@ joints:
       friction: {law: ambrosio, mu: 0.1, v0: 1e-4, v1: 1e-3}
 simulation: {end: 20 ms, step: 10 us}
 """
+TWO_LINKS = """freeplay: 1
+bodies:
+  a: {mass: 3, inertia: 0.03, com: [0.15, 0], frames: {end: [0.3, 0]}, pose: {angle: 60 deg}}
+  b: {mass: 2, inertia: 0.015, com: [0.125, 0], frames: {end: [0.25, 0]}, pose: {angle: -30 deg}}
+joints: {A: {type: revolute, between: [ground, a]}, B: {type: revolute, between: [a/end, b]}}
+drivers: {path: {inverse_kinematics: {frame: b/end, path: {x: 0.35 m + 0.25 m/s*t, y: 0.1 m}, joints: [A, B]}}}
+simulation: {end: 1 s, accuracy: 1 um}
+"""
 DRIVEN = PENDULUM.replace("initial: {joints: {pivot: 0 deg}}", "drivers: {motor: {joint: pivot, kind: angle, value: t}}")
 SHORT_ROD = DRIVEN.replace("bodies:", "bodies:\n  slider: {mass: 1 kg, inertia: 1 kg*m^2}").replace("drivers:", """\
   guide: {type: prismatic, between: [ground, slider]}
@@ -258,6 +266,7 @@ CASES = {
     "the mechanism comes to a singular position, as of links in line: it cannot go on, or rounding hides how; ...":
         (4, PARALLELOGRAMS, RUN + ["--set", "windows=10", "--accuracy", "1e-12"]),
     "the mechanism ... a singular position, where ... hold links in line: ... [dead-point]": (4, FLAT, RUN),
+    "the mechanism cannot follow the path at t = ..., where ...: a singular place, ... [ik-unreachable]": (4, TWO_LINKS, RUN),
     "driver '...' asks for a position that the mechanism cannot take: ... [dead-point]":
         (4, SHORT_ROD, RUN),
     "driver '...' cannot move joint '...' beyond the play: ... hold it at ...; ... [locked]": (4, LOCKED, RUN),
