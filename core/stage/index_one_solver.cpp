@@ -324,10 +324,7 @@ bool IndexOneSolver::project_velocity(StateView& state) {
 bool IndexOneSolver::is_rounded(double gap) {
   if (gap < near_position * system_.size()) return true;
   floor_.measure();
-  for (std::size_t r = 0; r < e_->phi.size(); ++r) {
-    if (!(std::abs(e_->phi[r]) <= floor_.of_phi()[r])) return false;
-  }
-  return true;
+  return floor_.all_phi_is_rounding();
 }
 
 bool IndexOneSolver::project_position(StateView& state) {

@@ -202,7 +202,7 @@ void NewtonStageSolver::correct_drift(StageFactor& factor, StateView& out) {
 }
 
 bool NewtonStageSolver::is_rounding_of_phi(const Stage& stage, StageFactor& factor) {
-  if (stage.level != ConstraintLevel::position || !floor_.phi_is_below_at_singular()) return false;
+  if (stage.level != ConstraintLevel::position || !floor_.all_phi_is_rounding()) return false;
   const std::size_t nv = increment_.size();
   std::fill(right_.begin(), right_.end(), 0.0);
   fill_position_residual(factor.beta_q);

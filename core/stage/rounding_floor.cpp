@@ -62,7 +62,7 @@ void RoundingFloor::follow_turns() {
   }
 }
 
-bool RoundingFloor::phi_is_below_at_singular() const {
+bool RoundingFloor::all_phi_is_rounding() const {
   const Evaluation& e = equations_.evaluation();
   const double anywhere = parameters_.singular_roundings * ConvergenceParameters::rounding * system_.size();
   for (std::size_t r = 0; r < phi_.size(); ++r) {

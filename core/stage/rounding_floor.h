@@ -33,8 +33,9 @@ class RoundingFloor {
     }
     return above == 0;
   }
-  /// The same for the |Phi| of a position close to a singular one.
-  bool phi_is_below_at_singular() const;
+  /// Whether all are rounding, those that are not kept as well: of a position close to a singular one, or after many
+  /// turns.
+  bool all_phi_is_rounding() const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

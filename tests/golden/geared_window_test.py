@@ -1,20 +1,10 @@
 """Statistics of a part of a turn of what a driver turns slowly are doubted."""
-import json
 import unittest
 
-from program import ProgramTest
+from model_cases import VerdictTest
 
 
-class GearedWindow(ProgramTest):
-    def run_model(self, text):
-        self.write("m.yaml", text)
-        self.freeplay("run", "m.yaml", "--force", "--out", "r", "--quiet")
-        self.summary = json.loads(self.read("r", "summary.json"))
-        self.trust = self.summary["trust"]
-
-    def ids(self):
-        return [reason["id"] for reason in self.trust["reasons"]]
-
+class GearedWindow(VerdictTest):
     GEARED = """freeplay: 1
 gravity: [0, -9.81]
 bodies:

@@ -53,3 +53,16 @@ class ModelTest(ProgramTest):
         errors = [message for message in messages if message["severity"] == "error"]
         self.assertEqual(expected, {name: errors[0][name] for name in expected}, messages)
         return errors
+
+
+class VerdictTest(ProgramTest):
+    """Runs of models of which the verdict is looked at."""
+
+    def run_model(self, text):
+        self.write("m.yaml", text)
+        self.freeplay("run", "m.yaml", "--force", "--out", "r", "--quiet")
+        self.summary = json.loads(self.read("r", "summary.json"))
+        self.trust = self.summary["trust"]
+
+    def ids(self):
+        return [reason["id"] for reason in self.trust["reasons"]]

@@ -1,20 +1,10 @@
 """Stop conditions that hold before a run begins are doubted."""
-import json
 import unittest
 
-from program import ProgramTest
+from model_cases import VerdictTest
 
 
-class StopAtStart(ProgramTest):
-    def run_model(self, text):
-        self.write("m.yaml", text)
-        self.freeplay("run", "m.yaml", "--force", "--out", "r", "--quiet")
-        self.summary = json.loads(self.read("r", "summary.json"))
-        self.trust = self.summary["trust"]
-
-    def ids(self):
-        return [reason["id"] for reason in self.trust["reasons"]]
-
+class StopAtStart(VerdictTest):
     SWINGS = """freeplay: 1
 gravity: [0, -9.81]
 bodies: {rod: {mass: 1 kg, inertia: 0.02, com: [0.3, 0]}}

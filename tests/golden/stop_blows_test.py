@@ -1,20 +1,10 @@
 """Blows of stops are judged by how deep and how fast surfaces meet."""
-import json
 import unittest
 
-from program import ProgramTest
+from model_cases import VerdictTest
 
 
-class StopBlows(ProgramTest):
-    def run_model(self, text):
-        self.write("m.yaml", text)
-        self.freeplay("run", "m.yaml", "--force", "--out", "r", "--quiet")
-        self.summary = json.loads(self.read("r", "summary.json"))
-        self.trust = self.summary["trust"]
-
-    def ids(self):
-        return [reason["id"] for reason in self.trust["reasons"]]
-
+class StopBlows(VerdictTest):
     def test_blows_of_a_stop_are_judged_as_those_in_a_play(self):
         """A firing pin of 10 g meets steel at 6 m/s: 2.9e5 m/s^2, as any blow of hard bodies, and a thousandth of the speed of sound."""
         pin = ("freeplay: 1\nbodies: {pin: {mass: 10 g, inertia: 1e-6 kg*m^2}}\njoints: {g: {type: prismatic, between: [ground, pin]}}\n"
