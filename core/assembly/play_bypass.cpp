@@ -101,6 +101,33 @@ class Bypasses {
     return rows;
   }
 
+  bool is_between(int k, int a, int b) const {
+    const JointElement& joint = model_.joints[at(k)];
+    const int first = joint.marker_a, second = joint.marker_b;
+    return (has_point_of(a, k, first) && has_point_of(b, k, second)) ||
+           (has_point_of(b, k, first) && has_point_of(a, k, second));
+  }
+
+  /// Whether what joint k holds with a marker is of this group: a rod holds also the body that is pinned where it ends.
+  bool has_point_of(int group, int k, int marker) const {
+    if (group_of(marker) == group) return true;
+    const Vector3d place(shut_.markers[at(marker)].position);
+    const double near = no_lever * closed_.size();
+    if (rank_of(rows_of(k, marker, place, near).rightCols(3)) > 0) return false;  // it holds more than a point
+    for (int pin = 0; pin < joints(); ++pin) {
+      const JointElement& joint = model_.joints[at(pin)];
+      if (pin == k || !is_ideal(pin)) continue;
+      const bool first = group_of(joint.marker_a) == group && group_of(joint.marker_b) == group_of(marker);
+      const bool second = group_of(joint.marker_b) == group && group_of(joint.marker_a) == group_of(marker);
+      if (!first && !second) continue;
+      const int own = first ? joint.marker_b : joint.marker_a;
+      const Vector3d at_pin(shut_.markers[at(own)].position);
+      if ((at_pin - place).norm() >= near) continue;
+      if (rank_of(rows_of(pin, own, place, near).leftCols(3)) == (model_.space == Space::planar ? 2 : 3)) return true;
+    }
+    return false;
+  }
+
   PlayBypass of(int j) const {
     const JointElement& loose = model_.joints[at(j)];
     const int a = group_of(loose.marker_a), b = group_of(loose.marker_b);
@@ -118,7 +145,7 @@ class Bypasses {
     const double near = no_lever * closed_.size() + within_its_play * loose.layout.clearance;
     const auto rows_at_place = [&](int k) {
       const JointElement& joint = model_.joints[at(k)];
-      return rows_of(k, group_of(joint.marker_b) == side ? joint.marker_b : joint.marker_a, place, near);
+      return rows_of(k, has_point_of(side, k, joint.marker_b) ? joint.marker_b : joint.marker_a, place, near);
     };
     const MatrixXd held = rows_at_place(j), play = directions_of(held);
     MatrixXd all(0, 6);
@@ -126,8 +153,7 @@ class Bypasses {
     int most = 0, alone = -1;
     for (int k = 0; k < joints(); ++k) {
       if (!is_ideal(k)) continue;
-      const JointElement& joint = model_.joints[at(k)];
-      if (std::minmax(group_of(joint.marker_a), group_of(joint.marker_b)) != std::minmax(a, b)) continue;
+      if (!is_between(k, a, b)) continue;
       const MatrixXd rows = rows_at_place(k);
       const int taken = taken_by(rows, play, loose);
       if (taken > most) alone = k;

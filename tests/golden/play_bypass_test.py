@@ -75,7 +75,7 @@ class PlayBypass(ProgramTest):
         self.assertEqual(["the play of joint 'loose' is bypassed by joint 'rod', which holds what is fixed to the same two bodies "
                           "without play in one of its directions: delete one of the two joints"], self.bypass(text))
         pinned = text.replace("glue: {type: fixed", "glue: {type: revolute")
-        self.assertEqual([], self.bypass(pinned))
+        self.assertEqual([BY.replace("'one'", "'loose'").replace("'more'", "'rod'") % (FIXED, ONE, "")], self.bypass(pinned))
         # A pin and a rod that does not go through it hold two bodies together.
         rod = "\n  brace: {type: distance, between: [b/up, c/out], length: 0.14142135623730951}\nsimulation:"
         frames = {"2, 0]}}\n  c:": "2, 0]}, frames: {up: [0, 0.1]}}\n  c:", "2, 0]}}\njoints": "2, 0]}, frames: {out: [0.1, 0]}}\njoints",
@@ -83,6 +83,23 @@ class PlayBypass(ProgramTest):
         for old, new in frames.items():
             pinned = pinned.replace(old, new)
         self.assertIn("what is fixed to the same two bodies", self.bypass(pinned)[0])
+
+    def test_a_rod_along_a_link_takes_the_play_of_its_pins(self):
+        """A four-bar whose rod lies along one link and ends where that is pinned, on the bodies beside it."""
+        text = ("freeplay: 1\nbodies:\n  crank: {mass: 1, inertia: 1e-2, frames: {tip: [0.1, 0], off: [0.1, 0.03]}}\n"
+                "  coupler: {mass: 1, inertia: 1e-2, frames: {tip: [0.2, 0]}, pose: {position: [0.1, 0], angle: 30 deg}}\n"
+                "  rocker: {mass: 1, inertia: 1e-2, frames: {tip: [0.15, 0]}, pose: {position: [0.25, 0], angle: 80 deg}}\n"
+                "frames: {ground/D: [0.25, 0]}\njoints:\n  A: {type: revolute, between: [ground, crank]}\n"
+                "  D: {type: revolute, between: [ground/D, rocker]}\n  B: {type: revolute, between: [crank/tip, coupler]%s}\n"
+                "  C: {type: revolute, between: [coupler/tip, rocker/tip]%s}\n  rod: {type: distance, between: [%s, rocker/tip], length: %s}\n"
+                "simulation: {end: 0.1, accuracy: 1 um}\n")
+        loose = ", clearance: {bearing_radius: 8 mm, radial_clearance: 0.05 mm, contact: {law: hertz, K: 1e9}}"
+        expected = [BY.replace("'more'", "'rod'") % (FIXED, ONE, "")]
+        for b, c, end, found in [(loose, "", "crank/tip", "B"), ("", loose, "crank/tip", "C"), (loose, "", "coupler", ""),
+                                 (loose, loose, "crank/tip", ""), (loose, "", "crank/off", ""), ("", loose, "crank/off", "")]:
+            with self.subTest((bool(b), bool(c), end)):
+                model = text % (b, c, end, 0.19 if "off" in end else 0.2)
+                self.assertEqual([m.replace("'one'", f"'{found}'") for m in expected] if found else [], self.bypass(model))
 
 
 if __name__ == "__main__":
