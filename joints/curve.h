@@ -20,26 +20,39 @@ class Curve {
   Curve(const Formula& formula, CurveForm form)
       : formula_(formula), step_(form == CurveForm::polar ? 1e-5 : 1e-6), switches_(formula.switches()) {}
 
+  struct Line {
+    double value, slope;
+  };
   struct At {
     double value, slope, bend;
   };
   At at(double x) const {
-    At out{};
-    out.value = value_at(x, out.slope);
+    const Line line = line_at(x);
+    return {line.value, line.slope, bend_at(x)};
+  }
+  Line line_at(double x) const {
+    const double variables[] = {x};
+    double slopes[1] = {};
+    const double value = formula_.at(variables, slopes);
+    return {value, slopes[0]};
+  }
+  /// Takes six values of the formula, a line one.
+  double bend_at(double x) const {
+    double bend = 0.0;
     const double near = step_ * static_cast<double>(between.size()), far = 2.0 * near;
     const bool back = one_form(x, x - far), ahead = one_form(x, x + far);
     if (back == ahead || one_form(x - near, x + near)) {
       for (std::size_t k = 0; k < between.size(); ++k) {
         const double by = step_ * static_cast<double>(k + 1);
-        out.bend += between[k] * (slope_at(x + by) - slope_at(x - by)) / (60.0 * step_);
+        bend += between[k] * (slope_at(x + by) - slope_at(x - by)) / (60.0 * step_);
       }
-      return out;
+      return bend;
     }
     const double sense = ahead ? 1.0 : -1.0;
     for (std::size_t k = 0; k < beside.size(); ++k) {
-      out.bend += sense * beside[k] * slope_at(x + sense * step_ * static_cast<double>(k)) / (60.0 * step_);
+      bend += sense * beside[k] * slope_at(x + sense * step_ * static_cast<double>(k)) / (60.0 * step_);
     }
-    return out;
+    return bend;
   }
 
   /// How many numbers decide() fills: each passes zero where the formula changes its form.
@@ -54,18 +67,7 @@ class Curve {
   static constexpr std::array<double, 7> beside{-147.0, 360.0, -450.0, 400.0, -225.0, 72.0, -10.0};  // of 60
   static constexpr std::int32_t most_switches = 64;
 
-  double value_at(double x, double& slope) const {
-    const double variables[] = {x};
-    double slopes[1] = {};
-    const double value = formula_.at(variables, slopes);
-    slope = slopes[0];
-    return value;
-  }
-  double slope_at(double x) const {
-    double slope = 0.0;
-    value_at(x, slope);
-    return slope;
-  }
+  double slope_at(double x) const { return line_at(x).slope; }
   /// Of more switches than usual nothing is known.
   bool one_form(double x, double y) const {
     if (switches_ <= 0 || switches_ > most_switches) return true;

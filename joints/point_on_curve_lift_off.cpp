@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
+#include <utility>
 
 #include "curve_check.h"
 #include "freeplay/kit/planar_contacts.h"
@@ -25,9 +27,9 @@ struct CurveSide {
   static constexpr std::size_t contacts = 1;
 
   struct Foot {
-    double lift;               ///< e
-    Eigen::Vector2d normal;    ///< N
-    double normal_by_tangent;  ///< dN by t.dP, along t
+    double at;               ///< the variable of the curve
+    double lift;             ///< e
+    Eigen::Vector2d normal;  ///< N
   };
 
   template <class T>
@@ -35,11 +37,15 @@ struct CurveSide {
     const Eigen::Vector2d p(space::value_of(m.d.x), space::value_of(m.d.y));
     const Foot foot = foot_of(p);
     const Eigen::Vector2d &n = foot.normal, t(n.y(), -n.x());
-    // Zero, with the derivatives of the place.
-    const T x = m.d.x - T(p.x()), y = m.d.y - T(p.y());
-    const T lift = T(foot.lift) + T(n.x()) * x + T(n.y()) * y;
-    const T turn = T(foot.normal_by_tangent) * (T(t.x()) * x + T(t.y()) * y);
-    const Vec2<T> normal{T(n.x()) + turn * T(t.x()), T(n.y()) + turn * T(t.y())};
+    T lift(foot.lift);
+    Vec2<T> normal{T(n.x()), T(n.y())};
+    if constexpr (!std::is_same_v<T, double>) {
+      // Zero, with the derivatives of the place.
+      const T x = m.d.x - T(p.x()), y = m.d.y - T(p.y());
+      lift = lift + T(n.x()) * x + T(n.y()) * y;
+      const T turn = T(normal_by_tangent(foot)) * (T(t.x()) * x + T(t.y()) * y);
+      normal = {T(n.x()) + turn * T(t.x()), T(n.y()) + turn * T(t.y())};
+    }
     return {T(-side) * lift, T(-side) * normal, {T(0.0), T(0.0)}};
   }
   std::array<double, 2> stand(const PlanarMotion<double>& m) const {
@@ -56,38 +62,88 @@ struct CurveSide {
  private:
   static constexpr int most_steps = 30;
   static constexpr double smallest_distance = 1e-12;  // [m]
+  static constexpr double smallest_secant = 1e-9;     // by the distance from the origin: of less rounding decides
 
-  /// The place on the curve and its derivatives by the variable of the curve.
   struct At {
-    Eigen::Vector2d place, rate, second;
+    Eigen::Vector2d place, rate;  ///< on the curve, and its derivative by the variable
+    Curve::Line line;
   };
   At at(double s) const {
-    const Curve::At f = curve.at(form == CurveForm::polar ? s - whole_turn * std::floor(s / whole_turn) : s);
-    if (form == CurveForm::cartesian) return {{s, f.value}, {1.0, f.slope}, {0.0, f.bend}};
+    const Curve::Line f = curve.line_at(within_turn(s));
+    if (form == CurveForm::cartesian) return {{s, f.value}, {1.0, f.slope}, f};
     const Eigen::Vector2d u(std::cos(s), std::sin(s)), q(-u.y(), u.x());
-    return {f.value * u, f.slope * u + f.value * q, (f.bend - f.value) * u + 2.0 * f.slope * q};
+    return {f.value * u, f.slope * u + f.value * q, f};
   }
+  /// The second derivative of the place, at `c`.
+  Eigen::Vector2d second_at(double s, const At& c) const {
+    const double bend = curve.bend_at(within_turn(s));
+    if (form == CurveForm::cartesian) return {0.0, bend};
+    const Eigen::Vector2d u(std::cos(s), std::sin(s)), q(-u.y(), u.x());
+    return (bend - c.line.value) * u + 2.0 * c.line.slope * q;
+  }
+  double within_turn(double s) const {
+    return form == CurveForm::polar ? s - whole_turn * std::floor(s / whole_turn) : s;
+  }
+  double sigma() const { return form == CurveForm::polar ? -1.0 : 1.0; }
 
-  /// Newton's method for (P - C).C' = 0 from the point of the curve below P; where the distance is not convex the step
-  /// is that along the tangent.
+  /// Where (P - C).C' = 0, from the point of the curve below P.
   Foot foot_of(const Eigen::Vector2d& p) const {
     double s = form == CurveForm::polar ? std::atan2(p.y(), p.x()) : p.x();
+    const double below = s;
+    if (!find_by_slopes(p, s)) {
+      s = below;
+      find_by_bends(p, s);
+    }
+    const At c = at(s);
+    const Eigen::Vector2d tangent = c.rate / std::max(c.rate.norm(), smallest_distance);
+    const Eigen::Vector2d left(-tangent.y(), tangent.x());
+    return {s, sigma() * left.dot(p - c.place), sigma() * left};
+  }
+
+  bool is_there(double step, const At& c) const {
+    return !(std::abs(step) * c.rate.norm() > 1e-15 * (smallest_distance + c.place.norm()));
+  }
+
+  /// The secant method, as a bend takes six values of the formula; false where P is so far off that the curve bends
+  /// about it, as there may be several feet.
+  bool find_by_slopes(const Eigen::Vector2d& p, double& s) const {
     At c = at(s);
+    double along = (p - c.place).dot(c.rate), convex = c.rate.squaredNorm();
     for (int i = 0; i < most_steps; ++i) {
-      const Eigen::Vector2d d = p - c.place;
-      const double squared = c.rate.squaredNorm(), along = d.dot(c.rate), convex = squared - d.dot(c.second);
-      const double step = along / (convex > 0.1 * squared ? convex : squared);
-      if (!(std::abs(step) * std::sqrt(squared) > 1e-15 * (smallest_distance + c.place.norm()))) break;
+      const double step = along / convex;
+      if (is_there(step, c)) return true;
       s += step;
       c = at(s);
+      const double before = std::exchange(along, (p - c.place).dot(c.rate));
+      if (std::abs(step) * c.rate.norm() < smallest_secant * c.place.norm()) continue;
+      convex = (before - along) / step;
+      const double share = convex / c.rate.squaredNorm();
+      if (!(share > 0.8 && share < 1.25)) return false;
     }
-    const double size = std::max(c.rate.norm(), smallest_distance), sigma = form == CurveForm::polar ? -1.0 : 1.0;
-    const Eigen::Vector2d tangent = c.rate / size, left(-tangent.y(), tangent.x());
-    const double curvature = (c.rate.x() * c.second.y() - c.rate.y() * c.second.x()) / (size * size * size);
-    const double off = left.dot(p - c.place), room = 1.0 - curvature * off;
+    return false;
+  }
+
+  /// Newton's method; where the distance is not convex the step is that along the tangent.
+  void find_by_bends(const Eigen::Vector2d& p, double& s) const {
+    for (int i = 0; i < most_steps; ++i) {
+      const At c = at(s);
+      const Eigen::Vector2d d = p - c.place;
+      const double squared = c.rate.squaredNorm(), convex = squared - d.dot(second_at(s, c));
+      const double step = d.dot(c.rate) / (convex > 0.1 * squared ? convex : squared);
+      if (is_there(step, c)) return;
+      s += step;
+    }
+  }
+
+  /// dN by t.dP, along t.
+  double normal_by_tangent(const Foot& foot) const {
+    const At c = at(foot.at);
+    const Eigen::Vector2d second = second_at(foot.at, c);
+    const double size = std::max(c.rate.norm(), smallest_distance);
+    const double curvature = (c.rate.x() * second.y() - c.rate.y() * second.x()) / (size * size * size);
+    const double room = 1.0 - curvature * sigma() * foot.lift;
     // N = sigma left, and t of place() is N turned by -90 degrees: sigma times the tangent.
-    const double by_tangent = -sigma * curvature / (std::abs(room) > 1e-9 ? room : 1e-9);
-    return {sigma * off, sigma * left, by_tangent};
+    return -sigma() * curvature / (std::abs(room) > 1e-9 ? room : 1e-9);
   }
 
   static constexpr double whole_turn = 2.0 * std::numbers::pi;
