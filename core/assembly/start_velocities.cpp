@@ -14,6 +14,7 @@
 #include "base/index.h"
 #include "linear/row_solutions.h"
 #include "linear/stacked_rows.h"
+#include "model/element_name.h"
 #include "model/force_element.h"
 
 namespace freeplay {
@@ -327,7 +328,7 @@ class Velocities {
   Origin origin_of(int row, int lead) const {
     if (lead >= 0) {
       const JointElement& joint = model_.joints[at(lead)];
-      return {2, fmt::format("joint '{}'", joint.name), joint.start_speed->location};
+      return {2, written_name(joint), joint.start_speed->location};
     }
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
       const Driver& driver = model_.drivers[at(d)];
@@ -338,7 +339,7 @@ class Velocities {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const Slice slice = system_.layout().rows(j);
       if (row < slice.offset || row >= slice.offset + slice.size) continue;
-      return {0, fmt::format("joint '{}'", model_.joints[at(j)].name), model_.joints[at(j)].location, j};
+      return {0, written_name(model_.joints[at(j)]), model_.joints[at(j)].location, j};
     }
     return {0, "a constraint"};
   }

@@ -21,6 +21,7 @@
 #include "assembly/play_rows.h"
 #include "assembly/row_space.h"
 #include "assembly/short_links.h"
+#include "assembly/start_overlap.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
@@ -58,6 +59,7 @@ class Examination {
       doubt(id, message, load.name, load.location);
     });
     doubt_short_links(model_, doubt_element);
+    doubt_overlaps(released_, start_, open_, doubt_element);
     judge_accuracy();
     judge_journals();
     judge_pairs();

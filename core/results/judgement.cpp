@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/element_name.h"
 #include "results/load_judgement.h"
 #include "results/path_judgement.h"
 #include "results/singular_judgement.h"
@@ -54,8 +55,6 @@ void judge(double value, const Limits& limits, TrustReason reason, Verdict& verd
   reason.limit = value > limits.bad ? limits.bad : limits.doubtful;
   verdict.add(std::move(reason));
 }
-
-std::string name(const JointElement& joint) { return fmt::format("joint '{}'", joint.name); }
 
 double mass(const Model& model) {
   double sum = 0.0;
@@ -182,8 +181,8 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
     verdict.add({.id = "clearance-size",
                  .level = Trust::doubtful,
                  .message = fmt::format("{}: its clearance of {:.3g} m is no play in a mechanism of {:.2g} m",
-                                        name(joint), layout.clearance, size),
-                 .element = name(joint),
+                                        written_name(joint), layout.clearance, size),
+                 .element = written_name(joint),
                  .value = layout.clearance,
                  .limit = most_play * size});
   }
@@ -191,8 +190,8 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
     return TrustReason{.id = "penetration",
                        .level = {},
                        .message = fmt::format("{}: its surfaces are up to {:.2g} m deep in each other, {:.2g} times {}",
-                                              name(joint), depth, depth / length, of),
-                       .element = name(joint)};
+                                              written_name(joint), depth, depth / length, of),
+                       .element = written_name(joint)};
   };
   const std::size_t before = verdict.reasons().size();
   if (radius > 0.0) judge(depth / radius, of_radius, deep("the smaller radius", radius), verdict);
@@ -205,8 +204,8 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
         {.id = "material-strength",
          .level = {},
          .message = fmt::format("{}: {:.3g} N press with {:.2g} Pa on average, more than a hundredth of E*",
-                                name(joint), force, pressure),
-         .element = name(joint)},
+                                written_name(joint), force, pressure),
+         .element = written_name(joint)},
         verdict);
   const double sound = std::sqrt(layout.contact_modulus / typical_density), speed = record.advice.approach_speed(j);
   judge(
@@ -215,8 +214,8 @@ void judge_contact(const RunRecord& record, int j, Verdict& verdict) {
        .level = {},
        .message = fmt::format("{}: surfaces meet with {:.3g} m/s, {:.2g} % of the speed of sound; impacts so fast are "
                               "not elastic",
-                              name(joint), speed, 100.0 * speed / sound),
-       .element = name(joint)},
+                              written_name(joint), speed, 100.0 * speed / sound),
+       .element = written_name(joint)},
       verdict);
 }
 
@@ -231,10 +230,11 @@ void judge_open_contact(const RunRecord& record, int j, Verdict& verdict) {
   judge(depth / length, known ? of_open_radius : of_size,
         {.id = "penetration",
          .level = {},
-         .message = fmt::format("{}: its surfaces are up to {:.2g} m deep in each other, {:.2g} times {}; check the "
-                                "stiffness of the contact and what presses",
-                                name(joint), depth, depth / length, known ? "the smaller radius" : "the model's size"),
-         .element = name(joint)},
+         .message =
+             fmt::format("{}: its surfaces are up to {:.2g} m deep in each other, {:.2g} times {}; check the "
+                         "stiffness of the contact and what presses",
+                         written_name(joint), depth, depth / length, known ? "the smaller radius" : "the model's size"),
+         .element = written_name(joint)},
         verdict);
 }
 
@@ -284,8 +284,8 @@ void judge_largest_force(const RunRecord& record, Verdict& verdict) {
          .level = {},
          .message = fmt::format("{}: {:.3g} N at t = {:.6g} s are {:.2g} times what drives, weights, loads and inertia "
                                 "come to: the mechanism is close to a singular position, or the numbers are",
-                                name(joint), seen.row_force, seen.row_force_time, seen.row_force / drives),
-         .element = name(joint)},
+                                written_name(joint), seen.row_force, seen.row_force_time, seen.row_force / drives),
+         .element = written_name(joint)},
         verdict);
 }
 
@@ -331,7 +331,8 @@ Slowest slowest_motion(const Model& model, double from) {
     if (!turn || model.settings.discard == 0.0) continue;
     const SlowestTurn geared = slowest_turn(model, driver.joint);
     if (geared.joint != driver.joint && *turn > slowest.period * geared.ratio)
-      slowest = {*turn / geared.ratio, name(model.joints[at(geared.joint)]), fmt::format(", which {} turns", own)};
+      slowest = {*turn / geared.ratio, written_name(model.joints[at(geared.joint)]),
+                 fmt::format(", which {} turns", own)};
   }
   return slowest;
 }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/element_name.h"
 
 namespace freeplay {
 namespace {
@@ -49,7 +50,7 @@ void judge_noise_beside(const RunRecord& record, Verdict& verdict) {
   const int j = noisiest_beside(record);
   if (j < 0) return;
   const RunExtremes::NoisyForce& noisy = record.extremes.noisy[at(j)];
-  const std::string joint = fmt::format("joint '{}'", record.model.joints[at(j)].name);
+  const std::string joint = written_name(record.model.joints[at(j)]);
   verdict.add({.id = "singular-position",
                .level = Trust::doubtful,
                .message = fmt::format("the mechanism comes so close to a singular position of its constraints that "
@@ -80,7 +81,7 @@ void judge_singular(const RunRecord& record, Verdict& verdict) {
   if (near.joint < 0 || !(near.force > of_beside * usual)) return judge_noise_beside(record, verdict);
   // A quotient of roundings is another one at each step: what grows little by little is the force of the motion.
   if (!inside && seen.near_change < of_last_step * near.force) return judge_noise_beside(record, verdict);
-  const std::string joint = fmt::format("joint '{}'", record.model.joints[at(near.joint)].name);
+  const std::string joint = written_name(record.model.joints[at(near.joint)]);
   verdict.add({.id = "singular-position",
                .level = Trust::doubtful,
                .message = fmt::format("the mechanism went through a singular position of its constraints, first at t = "

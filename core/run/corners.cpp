@@ -8,6 +8,7 @@
 
 #include "base/angle.h"
 #include "base/index.h"
+#include "model/element_name.h"
 
 namespace freeplay {
 namespace {
@@ -262,7 +263,7 @@ bool Corners::note_jumps(double kink) {
 void Corners::format_declared(double step, std::span<const std::string> said) {
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
     const double scale = run_.system.joints().layout(j).time_scale;
-    const std::string element = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+    const std::string element = written_name(run_.model.joints[at(j)]);
     if (!(scale > 0.0 && scale < step * (1.0 - nearly_a_step)) || std::ranges::count(said, element) > 0) continue;
     run_.warnings.push_back(
         fmt::format("{}: it declares that it changes within {:.2g} s, which the step of {:.3g} s goes over; ask for an "

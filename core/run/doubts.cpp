@@ -10,6 +10,7 @@
 #include "assembly/out_of_reach.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
+#include "model/element_name.h"
 #include "model/whole_mass.h"
 
 namespace freeplay {
@@ -106,7 +107,7 @@ void RunDoubts::judge_motion() {
 void RunDoubts::note_lasting_blows() {
   const LastingBlows::Fewest fewest = blows_.fewest();
   if (!(fewest.steps < fewest_steps_of_blow)) return;
-  const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(fewest.joint)].name);
+  const std::string joint = written_name(run_.model.joints[at(fewest.joint)]);
   run_.outcome.doubts.push_back(
       {.id = "impact-steps",
        .level = Trust::doubtful,
@@ -178,7 +179,7 @@ void RunDoubts::note_event_directions() {
     for (std::size_t i = 0; i < declared.size; ++i) {
       if (event_role(run_.system.joints().layout(j), i) != EventRole::contact_begin) continue;
       if (declared[i].crossing == Crossing::rising || !(value[i] < -StepEvents::tolerance)) continue;
-      const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+      const std::string joint = written_name(run_.model.joints[at(j)]);
       run_.outcome.doubts.push_back(
           {.id = "event-direction",
            .level = run_.adaptive ? Trust::bad : Trust::doubtful,
@@ -201,7 +202,7 @@ void RunDoubts::note_first_forces() {
 void RunDoubts::note_unused_play() {
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
     if (run_.outcome.steps == 0 || !run_.watch.never_moved(j) || !in_a_loop(run_.model, j)) continue;
-    const std::string joint = fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+    const std::string joint = written_name(run_.model.joints[at(j)]);
     run_.outcome.doubts.push_back(
         {.id = "play-bypassed",
          .level = Trust::doubtful,
@@ -216,7 +217,7 @@ void RunDoubts::format_warnings() {
     if (warning.text == nullptr) continue;
     std::string_view sentence = warning.text;
     if (sentence.ends_with('.')) sentence.remove_suffix(1);
-    const std::string joint = fmt::format("joint '{}'", run_.model.joints[j].name);
+    const std::string joint = written_name(run_.model.joints[j]);
     std::string text = fmt::format("{} at t = {:.9g} s: {}", joint, warning.time, sentence);
     run_.outcome.doubts.push_back({.id = "law-range",
                                    .level = Trust::doubtful,

@@ -10,6 +10,7 @@
 #include "assembly/out_of_reach.h"
 #include "base/index.h"
 #include "component/own_types.h"
+#include "model/element_name.h"
 #include "model/whole_mass.h"
 #include "run/likely_cause.h"
 
@@ -95,7 +96,7 @@ std::string RunFailure::row_name(int row_index) const {
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
     const Slice rows = run_.system.layout().rows(j);
     if (row_index >= rows.offset && row_index < rows.offset + rows.size) {
-      return fmt::format("joint '{}'", run_.model.joints[at(j)].name);
+      return written_name(run_.model.joints[at(j)]);
     }
   }
   return {};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/index.h"
+#include "model/element_name.h"
 #include "model/time_function.h"
 #include "system/guard_marks.h"
 
@@ -161,11 +162,12 @@ void InputActivity::add_joint(int joint) {
   if (element.parameters) {
     for (const auto& [name, value] : element.parameters->values) {
       if (const Expression* written = written_expression(value))
-        add("joint", element.name, *written, CornerKind::motion, Unit::other);
+        add(section_of(element), element.name, *written, CornerKind::motion, Unit::other);
     }
   }
   const ActsOn on = acts_on(system_, element);
-  for (const Expression& part : element.in_time) add("joint", element.name, part, CornerKind::load, Unit::other, 0, on);
+  for (const Expression& part : element.in_time)
+    add(section_of(element), element.name, part, CornerKind::load, Unit::other, 0, on);
   double corner = 0.0;
   Fault fault;
   if (!ask(joint, start_, corner, fault) || corner < unbounded) telling_.push_back({joint});

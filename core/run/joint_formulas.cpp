@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/element_name.h"
 #include "run/hidden_change.h"
 
 namespace freeplay {
@@ -351,7 +352,7 @@ void JointFormulas::format() {
                                         : course.kind == Course::Kind::torque ? "N m"
                                                                               : "N"};
       if (!change.counts()) continue;
-      change.say(run_, fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name));
+      change.say(run_, written_name(joint));
       break;
     }
   }

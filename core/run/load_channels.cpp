@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/element_name.h"
 
 namespace freeplay {
 
@@ -30,8 +31,7 @@ LoadChannels::LoadChannels(const System& system)
         system.joints().layout(driver.joint).coordinate == Coordinate::angle, acts_on(system, driver));
   }
   for (const JointElement& joint : model.joints) {
-    add(joint.by_motion, fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name),
-        joint.layout.coordinate == Coordinate::angle, acts_on(system, joint));
+    add(joint.by_motion, written_name(joint), joint.layout.coordinate == Coordinate::angle, acts_on(system, joint));
   }
 }
 

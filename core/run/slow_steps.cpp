@@ -8,6 +8,7 @@
 
 #include "assembly/play_rows.h"
 #include "base/index.h"
+#include "model/element_name.h"
 
 namespace freeplay {
 namespace {
@@ -63,7 +64,7 @@ std::string SlowSteps::name_of(std::size_t load) const {
   if (load >= joints + drivers) return fmt::format("force '{}'", run_.model.forces[load - joints - drivers].name);
   if (load >= joints) return fmt::format("driver '{}'", run_.model.drivers[load - joints].name);
   const JointElement& joint = run_.model.joints[load];
-  return fmt::format("{} '{}'", joint.is_force ? "force" : "joint", joint.name);
+  return written_name(joint);
 }
 
 SlowSteps::Blame SlowSteps::blame() const {

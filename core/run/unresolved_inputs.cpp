@@ -2,6 +2,8 @@
 #include <cmath>
 #include <utility>
 
+#include "base/index.h"
+#include "model/element_name.h"
 #include "run/input_activity.h"
 
 namespace freeplay {
@@ -117,13 +119,16 @@ std::vector<InputActivity::Unresolved> InputActivity::unresolved_by(double step,
     while (corner < end_ && times.size() < most_corners && ask(telling.joint, corner, corner, fault)) {
       if (corner < end_) times.push_back(corner);
     }
-    add_corners("joint", &system_.model().joints[static_cast<std::size_t>(telling.joint)].name, times);
+    const JointElement& joint = system_.model().joints[at(telling.joint)];
+    add_corners(section_of(joint), &joint.name, times);
   }
   for (const TimedJoint& timed : joints_) {
-    const std::string* name = &system_.model().joints[static_cast<std::size_t>(timed.joint)].name;
-    if (known(name) || system_.joints().layout(timed.joint).forces == 0) continue;
+    const JointElement& joint = system_.model().joints[at(timed.joint)];
+    if (known(&joint.name) || system_.joints().layout(timed.joint).forces == 0) continue;
     const auto change = unseen_force(timed, step, here, e);
-    if (change) found.push_back({"joint", name, change->time - change->length, change->time + change->length, false});
+    if (change)
+      found.push_back(
+          {section_of(joint), &joint.name, change->time - change->length, change->time + change->length, false});
   }
   return found;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/element_name.h"
 #include "model/whole_mass.h"
 #include "run/reach.h"
 
@@ -213,7 +214,7 @@ TrustReason RunWatch::why(int joint, std::span<const double> row) const {
   const auto contact = std::ranges::find(contacts_, joint, &Contact::joint);
   const JointLayout& layout = system_.joints().layout(joint);
   TrustReason reason{.id = {}, .level = Trust::bad, .message = {}};
-  reason.element = fmt::format("joint '{}'", system_.model().joints[at(joint)].name);
+  reason.element = written_name(system_.model().joints[at(joint)]);
   const double penetration = row[at(contact->penetration)];
   if (penetration > contact->deepest) {
     reason.id = "penetration";

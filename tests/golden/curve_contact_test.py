@@ -1,5 +1,6 @@
 """Curves that touch, against formulas, against discs and arcs, and against a program of another method."""
 import csv
+import json
 import math
 import os
 import unittest
@@ -212,13 +213,17 @@ simulation: {end: 1 s, step: 0.5 ms, output: {interval: 0.5 ms}}
                 self.assertIn(told, str(errors))
 
     def test_curves_that_start_inside_each_other_are_refused_where_they_stand(self):
-        for y, refused in ((0.06, True), (0.0, True), (0.0899, False)):
+        for y, refused in ((0.06, True), (0.0, True), (0.0899, False), (0.085, False)):
             text = RIDER % (0.0, y, 0.0, 0, 0, 0, "ground, rider", "60 mm", "30 mm", "", "1 ms", "1 ms", "step: 1 ms")
             if refused:
                 errors = self.refusal(text, line=7, id="starts-inside")
                 self.assertIn("'c'", errors[0]["message"])
-            else:
-                self.run_model(text)
+                continue
+            self.run_model(text)
+            found = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json")[0])["messages"]
+            doubts = [m["message"] for m in found if m["id"] == "starts-inside"]
+            self.assertEqual(1 if y == 0.085 else 0, len(doubts))
+            if doubts: self.assertIn("0.005 m deep in each other, 0.17 times the smaller radius", doubts[0])
 
 
 if __name__ == "__main__":

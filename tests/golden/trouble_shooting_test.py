@@ -256,6 +256,9 @@ CASES = {
         (0, driven("joints:", "  wheel: {mass: 1 kg, inertia: 0.1}\njoints:\n  axle: {type: revolute, between: [ground, wheel]}"), RUN),
     "the play of joint '...' is bypassed by ... [play-bypassed]":
         (0, journal("simulation:", "  pin: {type: revolute, between: [ground, ball]}\nsimulation:"), RUN),
+    "what force '...' lets touch starts ... m deep in each other, ... and is thrown apart: ... [starts-inside]":
+        (0, PUSHED.replace("forces: {", "forces: {c: {type: curve-contact, between: [ground, puck], first: 30 mm, second: 20 mm, contact: {law: hertz, K: 1e6}}, ")
+         .replace("velocity:", "pose: {position: [45 mm, 0]}, velocity:").replace("1e6 N*s", "-1 N*s"), RUN),
     "... left over with all drivers at rest, ... [left-free]":
         (0, driven("joints:", "  load: {mass: 1 kg, inertia: 0.1, com: [0.1, 0]}\njoints:\n  eye: {type: revolute, between: [rod/tip, load]}"), RUN),
     # While it runs
