@@ -101,7 +101,7 @@ void require_no_owner(const fs::path& directory) {
   if (descriptor < 0) descriptor = ::open(log.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor < 0) return;
   bool guarded = false;
-  if (!lock(descriptor, guarded)) refuse_in_use(directory, descriptor);
+  if (!lock_soon(descriptor, guarded)) refuse_in_use(directory, descriptor);
   ::close(descriptor);
 }
 

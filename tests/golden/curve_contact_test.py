@@ -220,7 +220,7 @@ simulation: {end: 1 s, step: 0.5 ms, output: {interval: 0.5 ms}}
                 self.assertIn("'c'", errors[0]["message"])
                 continue
             self.run_model(text)
-            found = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json")[0])["messages"]
+            found = json.loads(self.freeplay("validate", self.write("m.yaml", "freeplay: 1\n" + text), "--json")[0])["messages"]
             doubts = [m["message"] for m in found if m["id"] == "starts-inside"]
             self.assertEqual(1 if y == 0.085 else 0, len(doubts))
             if doubts: self.assertIn("0.005 m deep in each other, 0.17 times the smaller radius", doubts[0])

@@ -24,7 +24,7 @@ class DeclaredChanges(ProgramTest):
 
     def test_steps_longer_than_the_changes_that_a_joint_declares_are_doubted(self):
         found, err = self.reasons("0.4 ms", "step: 1 ms")
-        self.assertEqual(["joint 'push'"], [reason["element"] for reason in found])
+        self.assertEqual(["force 'push'"], [reason["element"] for reason in found])
         self.assertAlmostEqual(1e-4, found[0]["value"], delta=1e-12)
         self.assertEqual(1e-3, found[0]["limit"])
         self.assertIn("it declares that it changes within 0.0001 s, which the step of 0.001 s goes over", err)

@@ -79,7 +79,7 @@ class OpenContacts(ProgramTest):
                 reasons = self.depth(text)
                 self.assertEqual(1, len(reasons), text)
                 self.assertEqual("bad", reasons[0]["level"])
-                self.assertEqual(f"joint '{joint}'", reasons[0]["element"])
+                self.assertEqual(f"{'joint' if joint == 'mesh' else 'force'} '{joint}'", reasons[0]["element"])
                 self.assertIn("deep in each other", reasons[0]["message"])
                 self.assertIn(of, reasons[0]["message"])
 

@@ -391,7 +391,7 @@ simulation: {end: 1 s, accuracy: 1 um}
                 "drivers: {motor: {joint: axle, kind: angle, value: %s}}\nsimulation: {end: 1, accuracy: 1 um}\n")
         self.run_model(text % "2*pi*t")
         reason = next(r for r in self.trust["reasons"] if r["id"] == "law-range")
-        self.assertEqual("joint 'stop'", reason["element"])
+        self.assertEqual("force 'stop'", reason["element"])
         self.assertIn("through its stop", reason["message"])
         self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())

@@ -28,10 +28,10 @@ std::string doubted(double duration, const char* step, int told, const char* hei
 
 TEST(JointLoads, APulseThatFixedStepsGoOverIsDoubted) {
   EXPECT_EQ(doubted(2e-4, "1 ms", 0),
-            "joint 'hit' changes at t = 0.70041 s in a way that steps of 0.001 s do not show");
+            "force 'hit' changes at t = 0.70041 s in a way that steps of 0.001 s do not show");
   EXPECT_EQ(doubted(2e-5, "1 ms", 1),
-            "joint 'hit' changes at t = 0.70032 s in a way that steps of 0.001 s do not show");
-  EXPECT_EQ(doubted(2e-6, "1 ms", 2), "joint 'hit' has corners 2e-06 s apart, closer than the step of 0.001 s");
+            "force 'hit' changes at t = 0.70032 s in a way that steps of 0.001 s do not show");
+  EXPECT_EQ(doubted(2e-6, "1 ms", 2), "force 'hit' has corners 2e-06 s apart, closer than the step of 0.001 s");
 }
 
 TEST(JointLoads, APulseThatFixedStepsShowIsNotDoubted) {
