@@ -138,6 +138,7 @@ bool Corners::pass_kink(double kink) {
     return true;
   }
   note_jumps(kink);
+  const double from = run_.accepted.t();
   for (double next = kink; next - kink <= margin(kink); next = run_.kinks.next(next, kink + margin(kink))) {
     run_.accepted.t() = next + margin(next);
   }
@@ -150,7 +151,7 @@ bool Corners::pass_kink(double kink) {
     if (fault.kind != Fault::Kind::none) return failure_.fail_with(fault, kink);
     return failure_.fail(4, fmt::format("t = {:.9g} s: {}", kink, run_.solver.trouble()));
   }
-  if (const int jumping = row_that_jumps(); jumping >= 0) {
+  if (const int jumping = row_that_jumps(run_.accepted.t() - from); jumping >= 0) {
     return fail_at_jump(kink, jumping);
   }
   std::ranges::copy(run_.solver.impulse(), impulses_.begin());
@@ -189,9 +190,25 @@ void Corners::note_driven(const Evaluation& e) {
   std::ranges::copy(e.v, v_before_.begin());
 }
 
-// A row that holds a driven body which is elsewhere after a kink, or that does not hold any more; -1: none.
-int Corners::row_that_jumps() const {
-  const double allowed_gap = 1e-9 * run_.system.size();
+// By how much positions move in the `passed` time around a kink, and by the rounding of large ones, as after many turns.
+double Corners::moved_around_kink(double passed) const {
+  constexpr double ulps = 16.0 * std::numeric_limits<double>::epsilon();
+  double fastest = 0.0, rounding = 0.0;
+  for (std::size_t i = run_.accepted.v().size(); i < v_before_.size(); ++i) {
+    fastest = std::max({fastest, std::abs(v_before_[i]), std::abs(run_.e_accepted->v[i])});
+  }
+  for (std::size_t d = 0; d < motion_before_.size(); ++d) {
+    if (!prescribes(run_.model.drivers[d].kind)) continue;
+    const TimeValue &from = motion_before_[d], &to = run_.e_accepted->motion[d];
+    fastest = std::max({fastest, std::abs(from.rate), std::abs(to.rate)});
+    rounding = std::max(rounding, ulps * std::abs(to.value));
+  }
+  return 4.0 * passed * fastest * (1.0 + run_.system.size()) + rounding;
+}
+
+// A row that holds a driven body which is elsewhere `passed` after a kink, or that does not hold any more; -1: none.
+int Corners::row_that_jumps(double passed) const {
+  const double allowed_gap = 1e-9 * run_.system.size() + moved_around_kink(passed);
   for (std::size_t i = run_.accepted.q().size(); i < q_before_.size(); ++i) {
     const std::size_t driven = (i - run_.accepted.q().size()) / 3, part = (i - run_.accepted.q().size()) % 3;
     const double by = run_.e_accepted->q[i] - q_before_[i];

@@ -62,7 +62,8 @@ class Corners {
   [[gnu::cold]] bool fail_at_jump(double kink, int row);
   bool loads_jump(double corner);
   void note_driven(const Evaluation& e);
-  int row_that_jumps() const;
+  double moved_around_kink(double passed) const;
+  int row_that_jumps(double passed) const;
   void book_impulses(Evaluation& after);
 
   RunContext& run_;

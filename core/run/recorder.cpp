@@ -288,10 +288,10 @@ bool Recorder::write_rows_inside() {
   if (!feed_.give_instants(run_.accepted.t(), run_.trial.t(), [&](double t) { return see_at(t, feed_.inside()); }))
     return false;
   while (row_time(next_row_) < run_.trial.t()) {
-    if (!write_row_at(row_time(next_row_))) return false;
+    if (!begin_statistics_inside(row_time(next_row_)) || !write_row_at(row_time(next_row_))) return false;
     ++next_row_;
   }
-  return true;
+  return begin_statistics_inside(run_.trial.t());
 }
 
 bool Recorder::see_ahead(double t, std::span<double> row) {
@@ -348,8 +348,8 @@ bool Recorder::note_change() {
   if (!statistics_.counts(run_.accepted.t())) {
     statistics_.note(row_);
   } else {
-    statistics_.begin_stretch();
     statistics_.add(row_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0, 0.0);
+    if (run_.adaptive) statistics_.begin_stretch();
     clearances_.add(row_, run_.e_accepted, run_.energy.joint_loss());
   }
   if (run_.adaptive) peaks_.restart(run_.accepted.t(), statistics_.largest().last());

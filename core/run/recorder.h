@@ -40,13 +40,11 @@ class Recorder {
   /// What the row at t, inside or at the end of the step that was made, will hold but for energies that are summed up.
   bool see_ahead(double t, std::span<double> row);
 
-  /// Statistics at the end of a step that was just accepted; of one that ends abruptly before it is; and where
-  /// statistics begin inside.
+  /// Statistics at the end of a step that was just accepted; of one that ends abruptly before it is.
   bool record_step();
   bool note_abrupt_end();
   /// What acts changes at the accepted state, which stays: statistics go on from the new values.
   bool note_change();
-  bool begin_statistics_inside();
   /// All steps from now on.
   void feed(StepSink* sink) { feed_.feed(sink); }
   /// Events of that step.
@@ -88,6 +86,7 @@ class Recorder {
   bool know_contacts();
   bool write_row_at(double t);
   bool see_at(double t, std::span<double> row);
+  bool begin_statistics_inside(double until);
   void give_step();
   bool write_contact_rows();
   ContactRows::Give giving();

@@ -112,12 +112,12 @@ bool Recorder::note_abrupt_end() {
   if (!observer_.observe(run_.trial, run_.e_trial, row_between_, fault))
     return failure_.fail_with(fault, run_.trial.t());
   const Ends step{run_.accepted, run_.e_accepted, run_.trial, run_.e_trial};
-  const auto middle = [this, &step]() -> std::span<const double> {
-    if (!observe_inside(0.5 * (step.start.t() + step.end.t()), step, row_middle_)) return {};
+  const auto row_at = [this, &step](double t) -> std::span<const double> {
+    if (!observe_inside(t, step, row_middle_)) return {};
     maxima_.see(row_middle_);
     return row_middle_;
   };
-  if (statistics_.end_stretch(row_between_, middle)) clearances_.add(row_between_, run_.e_trial, {});
+  if (statistics_.end_stretch(row_between_, row_at)) clearances_.add(row_between_, run_.e_trial, {});
   if (contact_rows_.active() || feed_.active()) run_.energy.fill(run_.e_trial, run_.channels, row_between_);
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) see_contact_end(row_between_);
@@ -126,14 +126,13 @@ bool Recorder::note_abrupt_end() {
   return true;
 }
 
-// Statistics begin at the very instant that `discard` names.
-bool Recorder::begin_statistics_inside() {
+// Statistics begin at the very instant that `discard` names, if that is before `until` and inside of the step that is
+// being accepted.
+bool Recorder::begin_statistics_inside(double until) {
   const double t = statistics_.first_instant();
-  if (!statistics_.begins_inside(run_.accepted.t(), run_.trial.t())) return true;
+  if (until < t || !statistics_.begins_inside(run_.accepted.t(), run_.trial.t())) return true;
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
-  if (!observe_inside(t, {run_.accepted, run_.e_accepted, run_.trial, run_.e_trial}, row_between_)) return true;
-  run_.energy.fill_inside((t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t()), run_.e_between,
-                          run_.between.lambda(), run_.channels, row_between_);
+  if (!see_at(t, row_between_)) return false;
   statistics_.add(row_between_, run_.energy.driver_work(), run_.energy.joint_loss(), run_.energy.force_work(), 0.0,
                   0.0);
   clearances_.add(row_between_, run_.e_between, run_.energy.joint_loss());

@@ -27,9 +27,12 @@ void Statistics::Mean::add(double value, double dt, bool first, bool by_parabola
           {most, 0.25 * (before + last * last) / (length * length), 0.25 * (last * last + square) / (dt * dt)});
     }
     const double off = std::clamp(bend / 12.0, -most, most);
-    const double earlier = off * length * length * length, later = off * dt * dt * dt;
+    // Of a step far longer than the one that began the stretch this parabola says nothing: the next one says all.
+    const bool alone = known == 2 && dt > unlike * length;
+    const double earlier = off * length * length * length, later = alone ? 0.0 : off * dt * dt * dt;
     integral -= (known == 2 ? 2.0 : 1.0) * earlier + later;
     pending = later;
+    if (alone) known = 1;
   }
   known = first ? 1 : known + 1;
   before = last * last;
@@ -72,7 +75,7 @@ bool Statistics::counts(double t) const {
 }
 
 bool Statistics::begins_inside(double from, double to) const {
-  return !counts(from) && counts(to) && discard_until_ - from < (1.0 - 1e-9) * (to - from);
+  return !seen_ && !counts(from) && counts(to) && discard_until_ - from < (1.0 - 1e-9) * (to - from);
 }
 
 void Statistics::note(std::span<const double> row) {
@@ -152,13 +155,14 @@ void Statistics::add_means(std::span<const double> row, double dt, bool first) {
   }
 }
 
-bool Statistics::end_stretch(std::span<const double> row, const std::function<std::span<const double>()>& middle) {
+bool Statistics::end_stretch(std::span<const double> row,
+                             const std::function<std::span<const double>(double)>& row_at) {
   note(row);
   const double t = row[at(channels_.time)];
   if (!seen_ || !counts(t)) return false;
   add_inside(row, t);
-  if (wants_middle()) {
-    if (const std::span<const double> half_way = middle(); !half_way.empty()) {
+  if (const double length = wants_middle(); length > 0.0) {
+    if (const std::span<const double> half_way = row_at(t - 0.5 * length); !half_way.empty()) {
       note(half_way);
       const std::span<const double> values = largest_.last();
       each_mean(*this, [&](Mean& mean, std::size_t place) { mean.add_middle(values[place]); });
@@ -169,10 +173,12 @@ bool Statistics::end_stretch(std::span<const double> row, const std::function<st
   return true;
 }
 
-bool Statistics::wants_middle() const {
-  bool wanted = false;
-  each_mean(*this, [&](const Mean& mean, std::size_t) { wanted = wanted || mean.wants_middle(); });
-  return wanted;
+double Statistics::wants_middle() const {
+  double length = 0.0;
+  each_mean(*this, [&](const Mean& mean, std::size_t) {
+    if (mean.wants_middle()) length = mean.length;
+  });
+  return length;
 }
 
 void Statistics::begin_stretch() {

@@ -42,7 +42,7 @@ class Statistics {
 
   /// Whether a state at t is one of those that count.
   bool counts(double t) const;
-  /// Whether the first instant that counts lies inside a step.
+  /// Whether the first instant that counts lies inside a step and was not added yet.
   bool begins_inside(double from, double to) const;
   double first_instant() const { return discard_until_; }
   /// The accepted row at the end of a step (or the start row). Work and losses by driver, joint and force come from the
@@ -55,9 +55,9 @@ class Statistics {
   void note_inside(std::span<const double> row);
   /// The row at the end of a step before an event or a kink, where values may jump: the next to be added, at the same
   /// instant, is on the other side. False where it does not count. A step that is the only one since the last such
-  /// instant has no third point for a parabola: `middle` gives the row half way, or none, unless the step is a small
-  /// part of all means.
-  bool end_stretch(std::span<const double> row, const std::function<std::span<const double>()>& middle);
+  /// instant, or far longer than those, has no third point for a parabola: `row_at` gives the row half way, or none,
+  /// unless the step is a small part of all means.
+  bool end_stretch(std::span<const double> row, const std::function<std::span<const double>(double)>& row_at);
   /// After the row that was added last values go on otherwise than before.
   void begin_stretch();
   /// A row that is written; of one that was noted when it was seen.
@@ -95,7 +95,7 @@ class Statistics {
     double integral = 0.0, last = 0.0;
     double before = 0.0, length = 0.0;  ///< the square at the start of the last step, and its length
     double pending = 0.0;               ///< what the parabola to come does not take off the last step, if none comes
-    int known = 0;                      ///< ends of steps since values went on smoothly
+    int known = 0;                      ///< ends of like steps since values went on smoothly
     void add(double value, double dt, bool first, bool by_parabolas);
     void begin_anew();
     bool wants_middle() const;
@@ -140,7 +140,7 @@ class Statistics {
   };
   void add_means(std::span<const double> row, double dt, bool first);
   void add_inside(std::span<const double> row, double t);
-  bool wants_middle() const;
+  double wants_middle() const;  ///< length of the last step, if half way is wanted
   /// Calls `visit(mean, place)` for all, with the place of the value that it is of.
   template <class Self, class Visit>
   static void each_mean(Self& self, const Visit& visit) {

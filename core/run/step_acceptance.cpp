@@ -137,8 +137,9 @@ bool StepAcceptance::accept(const End& end) {
   const double dt = run_.trial.t() - run_.accepted.t();
   if (!end.has_energy) add_energy();
   doubts_.note_motion();
-  if (run_.adaptive && (!recorder_.write_rows_inside() || !recorder_.begin_statistics_inside())) return false;
-  const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded);
+  if (run_.adaptive && !recorder_.write_rows_inside()) return false;
+  const bool last = run_.trial.t() >= run_.settings.end;
+  const bool expected = run_.adaptive && (end.located.joint >= 0 || end.kink < unbounded || last);
   if (expected && !recorder_.note_abrupt_end()) return false;
   if (!apply_events(end.located, end.late) || !attempt_.commit_history() || !add_history_losses()) return false;
   run_.events.renew_switches(run_.trial, run_.e_trial);

@@ -27,6 +27,15 @@ class Inputs(ProgramTest):
         for steps in ((), ("--accuracy", "1um")):
             self.assertEqual(self.rows(*steps, model="fixed.yaml"), self.rows(*steps))
 
+    def test_means_go_on_from_the_new_effort(self):
+        """100 N from 0.5 s to 0.6 s of 2 s: the root of 100^2*0.1/2."""
+        self.write("cart.yaml", "freeplay: 1\nbodies: {m: {mass: 1, inertia: 1}}\njoints: {g: {type: prismatic, between: [ground, m]}}\n"
+                   "drivers: {u: {joint: g, kind: force, input: 0 N}}\nsimulation: {end: 2 s, step: 1 ms, output: {interval: 0.1}}\n")
+        self.write("in.csv", "time,u\n0.5,100\n0.6,0\n")
+        for steps in ((), ("--accuracy", "1um"), ("--accuracy", "1um", "--integrator", "verner7")):
+            self.rows("--inputs", "in.csv", *steps, model="cart.yaml")
+            self.assertAlmostEqual(22.3607, self.summary("r")["drivers"]["u"]["rms"], delta=0.03)
+
     def test_a_table_that_changes_nothing_leaves_the_rows_as_they_are(self):
         plain = self.rows()
         self.write("in.csv", "time,motor\n0.004,2\n0.01,2\n")

@@ -76,6 +76,19 @@ TEST(MotionKink, EveryEndOfARepeatedTableIsMet) {
   }
 }
 
+// The side of a corner is a rounding of its time, in which a fast driver goes on.
+TEST(MotionKink, ACornerOfTheSpeedLateInTimeIsNoJumpOfThePosition) {
+  const std::string text =
+      "freeplay: 1\nbodies: {fan: {mass: 1, inertia: 0.01}}\njoints: {hub: {type: revolute, between: [ground, fan]}}\n"
+      "drivers: {motor: {joint: hub, kind: velocity, table: {points: [[36000.1, 0], [36001.3, 600], [36004.7, 600], "
+      "[36006.1, 20]], unit: rad/s, interpolation: linear}}}\n"
+      "simulation: {start: 36000.1 s, end: 36006.1 s, accuracy: 1e-6, output: {interval: 0.1}}\n";
+  const ModelRun run(text);
+  ASSERT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  EXPECT_NEAR(run.last("joint.hub.speed"), 20.0, 1e-8);
+  EXPECT_NEAR(run.last("joint.hub.angle"), 0.5 * 600 * 1.2 + 600 * 3.4 + 0.5 * 620 * 1.4, 1e-6);
+}
+
 TEST(MotionKink, AJumpOfThePositionEndsTheRunAndNamesTheDriver) {
   for (const std::string motion : {"table: {points: [[0, 0], [0.2, 0.1]], interpolation: linear, outside: repeat}",
                                    "value: '1e-4*sign(t - 0.2)'"}) {

@@ -36,6 +36,18 @@ TEST(Statistics, LeaveOutWhatIsDiscarded) {
   EXPECT_NEAR(push.work, 0.5 * (1.0 - 0.0625), 2e-6);
 }
 
+// Steps of an accuracy are as long as half of the run here, so that the rows inside make the means.
+TEST(Statistics, BeginInsideOfALongStepWithTheRowsInIt) {
+  for (const std::string discard : {"0.5", "0.83", "0.4999"}) {
+    const double left_out = std::stod(discard), length = 1.0 - left_out;
+    const ModelRun run(test::replaced(test::replaced(slider(", discard: " + discard), "step: 1 ms", "accuracy: 1e-5"),
+                                      "interval: 0.25", "interval: 0.01"));
+    const DriverStatistics push = run.statistics().driver(0);
+    EXPECT_NEAR(push.rms, std::sqrt((4.0 / 3.0) * (1.0 - std::pow(left_out, 3)) / length), 1e-5) << discard;
+    EXPECT_NEAR(push.work, 0.5 * (1.0 - std::pow(left_out, 4)), 1e-5) << discard;
+  }
+}
+
 TEST(Statistics, HaveNoValueWhenEverythingIsDiscarded) {
   const ModelRun run(slider(", discard: 2"));
   EXPECT_TRUE(std::isnan(run.statistics().driver(0).rms));
@@ -59,6 +71,22 @@ TEST(Statistics, CountContactsAndTheirShareOfTime) {
   EXPECT_NEAR(ring.max_eccentricity, 1e-4 + 4.06450543819949e-06, 1e-10);
   EXPECT_NEAR(ring.contact_fraction, 0.000119629579928 / 4e-4, 1e-3);  // whole steps at both ends
   EXPECT_NEAR(ring.dissipated, 0.0, 1e-8);                             // of 1 mJ
+}
+
+// The force grows by the power 1.5 of the time in the only step that is made in contact.
+TEST(Statistics, OfARunThatEndsInItsFirstContactCountWhatGrowsInIt) {
+  const auto rms = [](const std::string& accuracy) {
+    const std::string text =
+        "freeplay: 1\nbodies: {ball: {mass: 1, inertia: 1e-4}}\njoints: {ring: {type: revolute, between: [ground, "
+        "ball], "
+        "clearance: {bearing_radius: 10 mm, radial_clearance: 0.1 mm, initial: {velocity: [4 mm/s, 0]}, "
+        "contact: {law: hertz, K: 1e9}}}}\n"
+        "simulation: {end: 25.06 ms, accuracy: " +
+        accuracy + ", output: {interval: 1 ms}}\n";
+    return ModelRun(text).statistics().joint(0).rms_force;
+  };
+  const double right = rms("1e-12");
+  EXPECT_NEAR(rms("1e-6"), right, 0.05 * right);
 }
 
 }  // namespace
