@@ -31,6 +31,7 @@ constexpr double leaps[] = {0.01, 0.03, 0.1};               // over a singular p
 constexpr double closed_range = 1e-5;                       // less is no range
 constexpr std::size_t most_branches = 8, few_branches = 2;  // that are looked at; each is followed both ways
 constexpr int many_velocities = 45;
+constexpr int most_way_steps = 2000;  // of a way: a finer one, as of a nut by its screw, is held to have no end
 
 // The way of the last lead of a mechanism in one direction.
 class Way {
@@ -48,7 +49,7 @@ class Way {
   double end() {
     const double whole = turns_ ? 2.0 * std::numbers::pi : 3.0 * unit_, start = lead_.value;
     double step = first_drive_step * unit_;
-    while (std::abs(lead_.value - start) < whole) {
+    for (int i = 0; i < most_way_steps && std::abs(lead_.value - start) < whole; ++i) {
       step = std::min(step, std::max(of_regularity * regularity(), finest_step) * unit_);
       if (go(step)) {
         step = std::min(1.5 * step, longest_step * unit_);
