@@ -23,6 +23,9 @@ constexpr double narrowest_box = 4.0, widest_box = 256.0;  // see Formula::box_s
 constexpr int rest_without_box = 16;                       // steps until a box is tried again
 constexpr int most_looks_at_formula = 4000;                // at a formula in a step
 constexpr int most_looks_at_ends = 200;                    // in one of one size
+constexpr int most_looks_at_impulse = 400;                 // likewise
+constexpr double known_impulse = 1e-3;                     // of a step with a formula's range in the run
+constexpr double seen_jump = 0.01, quick_part = 0.25;      // of that range, in one step
 
 }  // namespace
 
@@ -220,8 +223,10 @@ void MotionLoads::note() {
   for (Load& load : loads_) {
     load.motion.reach(std::span(reaches_).first(load.end_values.size()));
     for (Formula& formula : load.formulas) {
+      formula.misses = false;
       formula.open = is_open(load, formula);
-      open = open || formula.open;
+      if (!formula.open && !formula.misses) formula.impulse.add(formula.made);
+      open = open || formula.open || formula.misses;
     }
     load.motion.values_at_end(MotionPieces::count, load.end_values);
   }
@@ -230,7 +235,7 @@ void MotionLoads::note() {
   if (!(open || open_joint) || !follow(ignored)) return;
   for (Load& load : loads_) {
     for (Formula& formula : load.formulas) {
-      if (formula.open) note(load, formula);
+      if (formula.open || formula.misses) note(load, formula);
     }
   }
   if (open_joint) joints_.note_inside();
@@ -255,6 +260,7 @@ void MotionLoads::follow_ends() {
 }
 
 double MotionLoads::allowed(const Formula& formula) {
+  if (!(formula.low <= formula.high)) return 0.0;  // nothing is known of it
   const double largest = std::max(std::abs(formula.low), std::abs(formula.high));
   return std::max({formula.beyond, hidden_part * (formula.high - formula.low), no_change * largest});
 }
@@ -265,12 +271,26 @@ bool MotionLoads::is_open(const Load& load, Formula& formula) {
   double low = unbounded, high = -unbounded;
   if (in_box(load, formula) || find_box(load, formula)) {
     if (formula.low > formula.in_box.low || formula.high < formula.in_box.high) note_ends(load, formula, low, high);
+    formula.made = 0.5 * (formula.in_box.low + formula.in_box.high) * load.motion.length();
     return false;
   }
+  formula.made = 0.0;
   if (!note_ends(load, formula, low, high)) return false;
   const std::span<const Interval> reaches(reaches_.data(), load.end_values.size());
   const Interval range = formula.bounds.values(reaches, {load.motion.time(0.0), load.motion.time(1.0)});
+  formula.misses = misses(load, formula, range);
   return !(std::max(range.high - high, low - range.low) <= allowed(formula));
+}
+
+// Whether the step may make something else of the formula's impulse than the way along it: the form that it keeps is
+// another one at the end, or it changes by much. What it makes of it: a straight line between the ends.
+bool MotionLoads::misses(const Load& load, Formula& formula, const Interval& range) {
+  const double* const sides = run_.accepted.h().data() + run_.system.layout().switches().offset + formula.first_switch;
+  const Course kept{.load = load, .formula = formula, .sides = sides};
+  const double begin = value(kept, 0.0), end = value(kept, 1.0), all = formula.high - formula.low;
+  if (!std::isfinite(begin) || !std::isfinite(end)) return false;
+  formula.made = 0.5 * (begin + end) * load.motion.length();
+  return std::abs(end - formula.end_value) > seen_jump * all || range.high - range.low > quick_part * all;
 }
 
 // What a formula is at both ends of the step. False where it has no value there.
@@ -330,6 +350,31 @@ void MotionLoads::note(const Load& load, Formula& formula) {
     const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
     seek_beyond(course, formula, from, from + 1.0 / static_cast<double>(MotionPieces::count));
   }
+  course.looks = 0;
+  course.allowed = known_impulse * std::max(formula.high - formula.low, formula.beyond);
+  double exact = 0.0;
+  for (std::size_t k = 0; k < MotionPieces::count; ++k) {
+    const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
+    exact += impulse(course, from, from + 1.0 / static_cast<double>(MotionPieces::count));
+  }
+  if (std::isfinite(exact)) formula.impulse.add(formula.made, exact);
+}
+
+// Along the motion in a span of the step, by the value in its middle where that is good enough.
+double MotionLoads::impulse(Course& course, double from, double to) {
+  bound(course, from, to);
+  const double length = to - from, middle = bounds_.at_middle.value;
+  if (++course.looks > most_looks_at_impulse || shows(course, length) || length < finest_span)
+    return middle * length * course.load.motion.length();
+  const double half = 0.5 * (from + to), first = impulse(course, from, half);
+  return first + impulse(course, half, to);
+}
+
+bool MotionLoads::shows(const Course& course, double length) const {
+  const IntervalJet& range = bounds_.range;
+  const double dt = length * course.load.motion.length();
+  const double bend = std::max(std::abs(range.acceleration.low), std::abs(range.acceleration.high));
+  return (range.value.high - range.value.low) * length <= course.allowed || bend * dt * dt * length <= 24.0 * course.allowed;
 }
 
 void MotionLoads::seek_beyond(Course& course, Formula& formula, double from, double to) {
@@ -353,8 +398,12 @@ void MotionLoads::format() {
                                 .at = formula.at,
                                 .range = std::max(formula.high - formula.low, 0.0) + formula.beyond,
                                 .unit = load.load->turns ? "N m" : "N"};
-      if (!change.counts()) continue;
-      change.say(run_, load.load->words);
+      if (!change.counts() && !formula.impulse.counts()) continue;
+      if (change.counts()) {
+        change.say(run_, load.load->words);
+      } else {
+        formula.impulse.say(run_, load.load->words);
+      }
       break;
     }
   }

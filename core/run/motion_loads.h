@@ -7,6 +7,7 @@
 #include "base/formula_bounds.h"
 #include "run/context.h"
 #include "run/five_places.h"
+#include "run/impulse_error.h"
 #include "run/joint_formulas.h"
 #include "run/light_loads.h"
 #include "run/load_channels.h"
@@ -48,6 +49,9 @@ class MotionLoads {
     double low = unbounded, high = -unbounded;        ///< at the ends of all steps
     double beyond = 0.0, at = 0.0;                    ///< farthest beyond both ends of a step, and when [s]
     bool open = false;                                ///< whether more is to be known of it than a first look shows
+    ImpulseError impulse{};                           ///< of steps of one size
+    bool misses = false;                              ///< the present one may make something else of the impulse
+    double made = 0.0;                                ///< what it makes of that [N s or N m s]
     double end_time = std::nan(""), end_value = 0.0;  ///< of the step before
     /// Where the channels may be until a time while the formula stays in a range that is too narrow to hide anything;
     /// empty: not known. Many steps are in one.
@@ -58,7 +62,7 @@ class MotionLoads {
     int steps_to_box = 0;     ///< before that is worth while
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.low, self.high, self.beyond, self.at);
+      archive(self.low, self.high, self.beyond, self.at, self.impulse);
     }
   };
   struct Load {
@@ -99,6 +103,9 @@ class MotionLoads {
   bool may_cross(const Course& course) const;
   bool crosses(const Course& course, double s);
   void note(const Load& load, Formula& formula);
+  bool misses(const Load& load, Formula& formula, const Interval& range);
+  double impulse(Course& course, double from, double to);
+  bool shows(const Course& course, double length) const;
   /// By how much more it may be off than both ends of a step show.
   static double allowed(const Formula& formula);
   void seek_beyond(Course& course, Formula& formula, double from, double to);
