@@ -9,13 +9,14 @@ namespace freeplay {
 
 struct RunContext;
 
-/// Inside a step a load keeps the form that it has at the begin, and counts as a straight line. Along the motion that the
-/// step makes it may be something else, as where a switch changes its side. Of steps that follow each other soon what that
-/// leaves out or adds may cancel, and a friction that jumps to and fro about rest is off by one jump, not by all.
+/// Inside a step a load keeps the form that it has at the begin, and counts as a straight line. Along the motion that
+/// the step makes it may be something else, as where a switch changes its side. Of steps that follow each other soon
+/// what that leaves out or adds may cancel, and a friction that jumps to and fro about rest is off by one jump, not by
+/// all.
 class ImpulseError {
  public:
   /// More than this part of what a load moves is too much.
-  static constexpr double allowed_part = 0.02;
+  static constexpr double allowed_part = 0.03;
 
   void add(double made) {
     if (last_ != 0.0 && ++quiet_ > quiet_steps) settled_ += here(), last_ = largest_ = 0.0;

@@ -374,7 +374,8 @@ bool MotionLoads::shows(const Course& course, double length) const {
   const IntervalJet& range = bounds_.range;
   const double dt = length * course.load.motion.length();
   const double bend = std::max(std::abs(range.acceleration.low), std::abs(range.acceleration.high));
-  return (range.value.high - range.value.low) * length <= course.allowed || bend * dt * dt * length <= 24.0 * course.allowed;
+  return (range.value.high - range.value.low) * length <= course.allowed ||
+         bend * dt * dt * length <= 24.0 * course.allowed;
 }
 
 void MotionLoads::seek_beyond(Course& course, Formula& formula, double from, double to) {
