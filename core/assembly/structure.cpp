@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "assembly/doubled_loads.h"
+#include "assembly/doubled_plays.h"
 #include "assembly/force_doubts.h"
 #include "assembly/left_free.h"
 #include "assembly/play_bypass.h"
@@ -60,6 +61,7 @@ class Examination {
     });
     doubt_short_links(model_, doubt_element);
     doubt_overlaps(released_, start_, open_, doubt_element);
+    doubt_doubled_plays(closed_, shut_, doubt_element);
     judge_accuracy();
     judge_journals();
     judge_pairs();

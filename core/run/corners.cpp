@@ -190,7 +190,8 @@ void Corners::note_driven(const Evaluation& e) {
   std::ranges::copy(e.v, v_before_.begin());
 }
 
-// By how much positions move in the `passed` time around a kink, and by the rounding of large ones, as after many turns.
+// By how much positions move in the `passed` time around a kink, and by the rounding of large ones, as after many
+// turns.
 double Corners::moved_around_kink(double passed) const {
   constexpr double ulps = 16.0 * std::numeric_limits<double>::epsilon();
   double fastest = 0.0, rounding = 0.0;
