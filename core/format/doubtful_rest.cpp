@@ -15,6 +15,10 @@ namespace {
 constexpr std::size_t most_formulas = 2000;   // that are looked at
 constexpr double later[] = {10.0, 1e3, 1e6};  // runs in which what rests may begin
 constexpr double inside = 1.0 - 1e-9;         // part of the run: what begins at its very end does so after it
+constexpr double ramp_beyond = 20.0;          // the end of a ramp that begins in the run, in runs
+constexpr double ramp_within = 2000.0;        // and that is looked for: a second in milliseconds is a thousand
+constexpr double most_of_ramp = 0.05;         // of its change, in the run
+constexpr std::size_t most_corners = 64;      // of a motion that is a ramp
 
 /// What is written of formulas, or a table, that depend on time.
 struct Waiting {
@@ -88,7 +92,7 @@ class RestDoubts {
   void judge(std::span<const Expression> formulas, Waiting waiting) const {
     bool any = false;
     for (const Expression& formula : formulas) {
-      if (formula.depends_on_time() && !stays(formula, inside)) return;
+      if (formula.depends_on_time() && !stays(formula, inside)) return doubt_ramps(formulas, waiting.written);
       any = any || formula.depends_on_time();
       const Course course = course_of(formula, settings_, inside);
       waiting.zero = waiting.zero && course.known && course.low == 0.0 && course.high == 0.0;
@@ -102,6 +106,42 @@ class RestDoubts {
     } else if (waiting.is_load && waiting.zero) {
       warn(waiting, "check its times and the end of the run");
     }
+  }
+
+  void doubt_ramps(std::span<const Expression> formulas, const CheckedValue& written) const {
+    if (says_time(written)) return;
+    for (const Expression& formula : formulas) {
+      const double end = formula.depends_on_time() ? end_of_ramp(formula) : unbounded;
+      if (!(end < unbounded)) continue;
+      written.warn("doubtful-time",
+                   fmt::format("'{}' has only begun to change when the run ends at {:.4g} s, and goes on to {:.4g} s: "
+                               "write the unit after its times, as in 'ms', or check the end of the run",
+                               written.path(), settings_.end, end));
+      return;
+    }
+  }
+
+  /// When a motion comes gently to rest that begins in the run and has hardly changed at its end; else infinite.
+  double end_of_ramp(const Expression& formula) const {
+    // What swings has changed as much in the run as in a longer one, and has many corners.
+    const Course here = course_of(formula, settings_), longer = course_of(formula, settings_, ramp_beyond);
+    if (!here.known || !longer.known || here.high - here.low > 0.5 * (longer.high - longer.low)) return unbounded;
+    const double from = settings_.start, until = from + ramp_within * span();
+    const Outline outline = formula.outline(from, until);
+    if (outline.corners.empty() || outline.corners.size() > most_corners || outline.rates.back() != 0.0)
+      return unbounded;
+    const double end = outline.corners.back().time;
+    if (!(end - from > ramp_beyond * span())) return unbounded;
+    Jet begin, before, at_rest, after;
+    EvaluationFailure failure;
+    if (!formula.evaluate(from, begin, failure) || !formula.evaluate(end - 1e-6 * (end - from), before, failure) ||
+        !formula.evaluate(end, at_rest, failure) || !formula.evaluate(2.0 * end - from, after, failure))
+      return unbounded;
+    const double change = std::abs(at_rest.value - begin.value);
+    const bool rests = std::abs(after.value - at_rest.value) <= 1e-9 * change;
+    // A limit that min() sets to what grows is a kink, and of no time.
+    const bool gently = std::abs(before.rate) * (end - from) <= 1e-3 * change;
+    return rests && gently && here.high - here.low <= most_of_ramp * change ? end : unbounded;
   }
 
   /// The last point before a table that has `value` at `start` leaves it; infinite where it keeps it for good.

@@ -181,6 +181,9 @@ MISTAKES = [
      "doubtful-time", "'5 N", "zero all the time"),
     (BOX, "simulation:", "drivers: {up: {inverse_kinematics: {frame: box, path: {y: '0.1*smooth(t, 200, 300)'}, joints: [guide]}}}\nsimulation:",
      "doubtful-time", "'0.1", "at 200 s: write the unit"),
+    *[(CRANK, DRIVEN, "kind: %s}}" % motion, "doubtful-time", motion[motion.index("'"):motion.index("'") + 4], "and goes on to")
+      for motion in ("velocity, value: '50*smooth(t, 0, 4)'", "angle, value: '60 deg*s_curve(t, 0, 10, 3, 1)'",
+                     "angle, value: '60 deg*trapezoid(t, 0, 10, 3)'", "torque, value: '0.5*smooth(t, 0.001, 4)'")],
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 2 mm", "doubtful-clearance", "wrist", "times the smaller radius"),
     (TRAIN, "ratio: 2", "ratio: -2000", VALUE, "-2000", "the motor is on the slow side", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
     (TRAIN, "of: [a, b], ratio: 2", "of: [b, a], ratio: 1/2000", VALUE, "1/2000", "turn by 1 to 2000", {"kind: velocity, value: 10": "kind: torque, value: 1"}),
@@ -248,6 +251,9 @@ SOUND = [
     (CRANK, DRIVEN, "kind: angle, value: 60 deg*sin(3*t)}}"),
     (CRANK, DRIVEN, "kind: angle, value: '2*smooth(t, 20 s, 40 s)'}}"),
     (CRANK, "radial_clearance: 0.0005", "radial_clearance: 1 mm"),
+    (CRANK, "radial_clearance: 0.0005", "radial_clearance: 1.6 mm"),
+    *[(CRANK, DRIVEN, "kind: velocity, value: '%s'}}" % value)
+      for value in ("50*smooth(t, 0 s, 4 s)", "50*smooth(t, 0, 0.3)", "min(50, 5*t)", "50*sin(9*t)*(1 - smooth(t, 4, 5))")],
     (CRANK, "forces:\n", "forces:\n  none: {type: torque, on: slider, value: 0}\n"),
     (CRANK, "forces:\n", "forces:\n  push: {type: force, at: slider, value: ['-2 N*smooth(t, 10 ms, 15 ms)', 0]}\n"),
     (BOX, "stiffness: 2e4", "stiffness: '2e4 N/m + 1e4 N/m*smooth(t, 20 s, 30 s)'"),
