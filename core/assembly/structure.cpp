@@ -8,7 +8,6 @@
 #include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
