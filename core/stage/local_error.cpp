@@ -3,7 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "base/index.h"
+
 namespace freeplay {
+namespace {
+constexpr double longest_memory = 1.0;  // [s]: the unit of time in which velocities are judged, too
+}
 
 LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
     : equations_(equations), index_one_(index_one) {
@@ -13,6 +18,10 @@ LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
   other_a_ = numbers(layout.nv());
   other_lambda_ = numbers(layout.nc());
   most_z_ = other_z_ = other_rate_ = numbers(layout.nz());
+  const Joints& joints = equations.system().joints();
+  for (int j = 0; j < joints.count(); ++j) {
+    if (joints.layout(j).forces != 0 && joints[j].internal.size > 0) with_memory_.push_back(j);
+  }
 }
 
 double LocalError::norm(std::span<const double> position, std::span<const double> velocity) {
@@ -66,6 +75,52 @@ double LocalError::internal_norm(double dt, const StateView& end, std::span<cons
     const double most = most_z_[i];
     if (most > 0.0 && !(std::abs(error[i]) <= internal_allowed * most * std::max(largest, 1.0))) {
       largest = std::abs(error[i]) / (internal_allowed * most), worst_component_ = -1;
+    }
+  }
+  const double idle = part_of_idle(end, error);
+  if (idle > largest) largest = idle, worst_component_ = -1;
+  return largest;
+}
+
+bool LocalError::ask(int joint, int i, const Point& at, Answer& answer) {
+  const Joints& joints = equations_.system().joints();
+  const Slice& own = joints[joint].internal;
+  JointForces forces{};
+  forces.internal_rate = {other_rate_.data(), freeplay::at(own.size)};
+  std::ranges::fill(forces.internal_rate, 0.0);
+  Message refusal;
+  if (!joints.handle(joint).apply(joints.input(joint, at, equations_.evaluation()), forces, refusal)) return false;
+  std::copy_n(forces.wrench_a, 6, answer.wrenches);
+  std::copy_n(forces.wrench_b, 6, answer.wrenches + 6);
+  answer.rate = other_rate_[freeplay::at(i)];
+  return true;
+}
+
+double LocalError::part_of_idle(const StateView& end, std::span<const double> error) {
+  const double part = position_ / equations_.system().size();
+  std::copy_n(end.z.begin(), other_z_.size(), other_z_.begin());
+  StateView here = end;
+  here.z = Span<double>(other_z_.data(), other_z_.size());
+  const Point at = equations_.point_of(here);
+  double largest = 0.0;
+  for (const int j : with_memory_) {
+    const Slice& own = equations_.system().joints()[j].internal;
+    for (int i = 0; i < own.size; ++i) {
+      const std::size_t k = freeplay::at(own.offset + i);
+      double scale = std::max(most_z_[k], std::abs(end.z[k]));
+      if (std::abs(error[k]) <= part * scale) continue;
+      const double change = scale > 0.0 ? part * scale : error[k];
+      Answer now, changed;
+      if (!ask(j, i, at, now)) continue;
+      other_z_[k] = end.z[k] + change;
+      const bool answered = ask(j, i, at, changed);
+      other_z_[k] = end.z[k];
+      // Where it moves something, its error is judged by that.
+      if (!answered || !std::ranges::equal(now.wrenches, changed.wrenches)) continue;
+      // One that begins to move from zero is compared with what it comes to while it forgets.
+      const double decay = std::abs((changed.rate - now.rate) / change);
+      scale = std::max(scale, std::abs(now.rate) * std::min(longest_memory, 1.0 / decay));
+      if (scale > 0.0) largest = std::max(largest, std::abs(error[k]) / (part * scale));
     }
   }
   return largest;

@@ -50,6 +50,16 @@ class LocalError {
   /// part along the motion counts; the part across is taken away when the end of the step is projected, up to its
   /// square over the size of the model.
   double part_of_allowed(std::span<const double> error, double allowed);
+  /// The same of internal variables that move nothing at the end of the step, but may later, as the strain of a clutch
+  /// that slips once it holds. What they would do then is not known, so that each may err by the part of itself that a
+  /// position may err by of the model's size. The equations were evaluated at the end of the step.
+  double part_of_idle(const StateView& end, std::span<const double> error);
+  struct Answer {
+    double wrenches[12];
+    double rate;
+  };
+  /// A joint's wrenches and the rate of its internal variable i with other_z_; false where it refuses.
+  bool ask(int joint, int i, const Point& at, Answer& answer);
 
   StageEquations& equations_;
   IndexOneSolver& index_one_;
@@ -59,6 +69,7 @@ class LocalError {
   std::vector<double> motion_;                                         // part of an error along the motion
   std::vector<double> most_z_;                                         // largest amounts of accepted states
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // with the internal variables in error
+  std::vector<int> with_memory_;                                       // joints with internal variables
 };
 
 }  // namespace freeplay
