@@ -1,5 +1,6 @@
 """Brakes that hold and slip, clutches that run free one way, in the plane and in space, against formulas."""
 import csv
+import json
 import math
 import unittest
 
@@ -138,6 +139,34 @@ initial: {speeds: {axle: 10 rad/s}}
 simulation: {end: 0.2 s, integrator: %s, accuracy: 1e-6, output: {interval: 10 ms}}
 """ % integrator)
                 self.assertLess(abs(run["body.wheel.omega"][-1] - (10 - 0.6 / 0.5)), 1e-4)
+
+    def test_where_a_brake_comes_to_hold_keeps_the_accuracy_of_every_integrator(self):
+        # I = 0.02 kg m^2 from 1.5 rad/s, slipping at 0.7 N m; held with 38.7 rad/s and 15 rad/s of damping. The strain
+        # moves nothing while it slips, and is what holds from then on.
+        inertia, limit, stiffness, relaxation = 0.02, 0.7, 30, 0.02
+        slipping = lambda t: (limit / stiffness * (1 - math.exp(-t / relaxation)), 1.5 - limit / inertia * t)
+        early, late = 0.0, 1.5 * inertia / limit
+        for _ in range(100):
+            stick = 0.5 * (early + late)
+            strain, speed = slipping(stick)
+            early, late = (stick, late) if strain + relaxation * speed > limit / stiffness else (early, stick)
+        held = swing(strain, speed, stiffness * relaxation / (2 * inertia), math.sqrt(stiffness / inertia))
+        angle = lambda t: (1.5 * t - 0.5 * limit / inertia * t * t if t < stick else
+                           1.5 * stick - 0.5 * limit / inertia * stick ** 2 - strain + held(t - stick)[0])
+        names = [one["name"] for one in json.loads(self.freeplay("list", "integrators", "--json")[0])]
+        self.assertLessEqual({"bathe", "newmark", "hht", "generalized-alpha", "dopri5", "verner6", "verner7"}, set(names))
+        for integrator in names:
+            for accuracy in (1e-4, 1e-6, 1e-8, 1e-9):
+                with self.subTest(integrator=integrator, accuracy=accuracy):
+                    run = self.run_model("""bodies: {wheel: {mass: 1, inertia: 0.02}}
+joints: {axle: {type: revolute, between: [ground, wheel]}}
+forces: {brake: {type: brake, between: [ground, wheel], limit: 0.7 N*m, stiffness: 30, relaxation: 20 ms}}
+initial: {speeds: {axle: 1.5 rad/s}}
+simulation: {end: 0.5 s, integrator: %s, accuracy: %r, output: {interval: 5 ms}}
+""" % (integrator, accuracy))
+                    self.assert_column(run, "body.wheel.angle", angle, accuracy)
+                    self.assert_column(run, "force.brake.strain",
+                                       lambda t: slipping(t)[0] if t < stick else held(t - stick)[0], accuracy)
 
     def test_what_no_coupling_can_be_is_refused_where_it_stands(self):
         text = SPACES["plane"][0] + "forces:\n  a: {type: %s, between: [ground, wheel], %s}\n"
