@@ -26,7 +26,9 @@ StepInside::StepInside(RunContext& run, RunFailure& failure, StepAttempt& attemp
       defect_(inner_before_.size()),
       rate_defect_(inner_before_.size()),
       start_rate_(run.z_rate.size()),
-      end_rate_(run.z_rate.size()) {}
+      end_rate_(run.z_rate.size()),
+      memory_before_(at(run.system.layout().nz())),
+      memory_change_(memory_before_.size()) {}
 
 bool StepInside::settle_between() {
   StateView view = run_.between.view();
@@ -78,8 +80,10 @@ void StepInside::know_inside() {
   std::ranges::fill(inner_before_, 0.0);
   if (!look(InnerMotion::middle)) return;
   run_.inner.fit_middle();
-  if (change(InnerMotion::middle) <= unnoticed_inside) return;
+  // Of internal variables the middle alone says too little.
+  if (joints == 0 && change(InnerMotion::middle) <= unnoticed_inside) return;
   std::ranges::fill(inner_before_, 0.0);
+  std::ranges::fill(memory_before_, 0.0);
   double last_change = unbounded;
   for (int sweep = 0; sweep < most_sweeps; ++sweep) {
     bool seen = look(InnerMotion::middle);
@@ -88,10 +92,21 @@ void StepInside::know_inside() {
     if (!seen) return run_.inner.forget();
     run_.inner.fit();
     const double now = change(0);
-    if (now <= unnoticed_inside) return;
+    if (now <= unnoticed_inside && change_of_memory(0) <= unnoticed_inside) return;
     if (now > astray_inside && !(now < most_growth * last_change)) return run_.inner.forget();
     last_change = now;
   }
+}
+
+// By how much the last sweep moved internal variables at a place, in units of what a step may err by.
+double StepInside::change_of_memory(std::size_t place) {
+  if (memory_before_.empty()) return 0.0;
+  const InnerMotion::Weights weights(InnerMotion::places[place]);
+  for (std::size_t i = 0; i < memory_before_.size(); ++i) {
+    const double now = run_.inner.internal(weights, i);
+    memory_change_[i] = now - std::exchange(memory_before_[i], now);
+  }
+  return run_.solver.internal_error_norm(run_.trial.t() - run_.accepted.t(), run_.trial.view(), memory_change_);
 }
 
 // Largest error of an interpolation by the ends, in units of what a step may err by, that misses `defect` of the second

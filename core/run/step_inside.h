@@ -23,12 +23,14 @@ class StepInside {
  private:
   void know_inside();
   double error_by_missing(double s);
+  double change_of_memory(std::size_t place);
   bool settle_inside(double t);
 
   RunContext& run_;
   RunFailure& failure_;
   StepAttempt& attempt_;
   std::vector<double> inner_before_, defect_, rate_defect_, start_rate_, end_rate_;
+  std::vector<double> memory_before_, memory_change_;  // of internal variables of joints
 };
 
 }  // namespace freeplay

@@ -166,7 +166,7 @@ simulation: {end: 0.5 s, integrator: %s, accuracy: %r, output: {interval: 5 ms}}
 """ % (integrator, accuracy))
                     self.assert_column(run, "body.wheel.angle", angle, accuracy)
                     self.assert_column(run, "force.brake.strain",
-                                       lambda t: slipping(t)[0] if t < stick else held(t - stick)[0], accuracy)
+                                       lambda t: slipping(t)[0] if t < stick else held(t - stick)[0], 2 * accuracy)
 
     def test_what_no_coupling_can_be_is_refused_where_it_stands(self):
         text = SPACES["plane"][0] + "forces:\n  a: {type: %s, between: [ground, wheel], %s}\n"
