@@ -9,6 +9,7 @@ namespace freeplay {
 namespace {
 
 constexpr double vanishing_part = 1e-4;  // of the largest variable of a joint
+constexpr double left_over = 1e-15;      // of the largest rate that the iteration came by: its rounding
 
 // Gauss-Jordan with partial pivoting, in place on a small row-major matrix and its right sides.
 void solve_small(double* matrix, int size, double* right, int columns) {
@@ -106,7 +107,7 @@ void InternalElimination::add_to_right(std::span<const double> internal_rate, st
 }
 
 double InternalElimination::advance(std::span<const double> change, double beta_z, std::span<const double> z,
-                                    std::span<double> z_rate) const {
+                                    std::span<double> z_rate, std::span<double> largest_rate) const {
   double largest = 0.0;
   for (const Block& block : blocks_) {
     // Components of a vector that vanish but for rounding never settle by their own measure.
@@ -123,6 +124,10 @@ double InternalElimination::advance(std::span<const double> change, double beta_
         if (body != ground) sum += slope(block, i, c) * change[at(width * body + c % width)];
       }
       z_rate[index] += sum;
+      // What is left of a rate that comes to zero, as in a clutch that runs free from its first step on, is no part of
+      // it.
+      largest_rate[index] = std::max(largest_rate[index], std::abs(z_rate[index]));
+      if (std::abs(z_rate[index]) <= left_over * largest_rate[index]) z_rate[index] = 0.0;
       const double size = std::max({std::abs(z[index]), beta_z * std::abs(z_rate[index]), vanishing});
       if (sum != 0.0) largest = std::max(largest, beta_z * std::abs(sum) / size);
     }

@@ -8,7 +8,8 @@
 namespace freeplay {
 namespace {
 constexpr double longest_memory = 1.0;  // [s]: the unit of time in which velocities are judged, too
-}
+constexpr double least_allowed = std::numeric_limits<double>::min();  // what is less has no digits to compare
+}  // namespace
 
 LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
     : equations_(equations), index_one_(index_one) {
@@ -120,7 +121,7 @@ double LocalError::part_of_idle(const StateView& end, std::span<const double> er
       // One that begins to move from zero is compared with what it comes to while it forgets.
       const double decay = std::abs((changed.rate - now.rate) / change);
       scale = std::max(scale, std::abs(now.rate) * std::min(longest_memory, 1.0 / decay));
-      if (scale > 0.0) largest = std::max(largest, std::abs(error[k]) / (part * scale));
+      if (part * scale >= least_allowed) largest = std::max(largest, std::abs(error[k]) / (part * scale));
     }
   }
   return largest;

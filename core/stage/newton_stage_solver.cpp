@@ -25,6 +25,7 @@ NewtonStageSolver::NewtonStageSolver(const System& system, const ConvergencePara
   increment_.resize(at(nv));
   drift_.resize(at(nv));
   z_rate_.resize(at(system.layout().nz()));
+  largest_z_rate_.resize(z_rate_.size());
 }
 
 // Flattened: in models of few bodies the calls of its short parts would cost as much as the parts.
@@ -62,6 +63,7 @@ StageFactor& NewtonStageSolver::begin_stage(const Stage& stage, StateView& out, 
   equations_.note_trouble("");
   *out.t = stage.t;
   std::ranges::fill(z_rate_, 0.0);
+  std::ranges::fill(largest_z_rate_, 0.0);
   StageFactor& factor = factors_.factor_for(stage.beta_q, stage.beta_v);
   factor.beta_z = stage.beta_z;
   monitor_.begin(stage.beta_q, stage.beta_v, factor.record);
@@ -166,7 +168,8 @@ bool NewtonStageSolver::update_internal(const Stage& stage, const StateView& out
   const InternalElimination& internal = factor.matrix.internal();
   if (internal.empty()) return true;
   const std::span<const double> da = std::span(update_).first(increment_.size());
-  return internal.advance(da, stage.beta_z, out.z, z_rate_) <= monitor_.parameters().internal_tolerance;
+  const double change = internal.advance(da, stage.beta_z, out.z, z_rate_, largest_z_rate_);
+  return change <= monitor_.parameters().internal_tolerance;
 }
 
 void NewtonStageSolver::update_unknowns(StateView& out, StageFactor& factor) {

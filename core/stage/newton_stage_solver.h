@@ -131,7 +131,7 @@ class NewtonStageSolver {
   RoundingFloor floor_;
   ConvergenceMonitor monitor_;
   LocalError local_error_;
-  std::vector<double> right_, update_, increment_, z_rate_, work_;
+  std::vector<double> right_, update_, increment_, z_rate_, largest_z_rate_, work_;
   bool drifted_ = false;       // the present stage began with drift
   std::vector<double> drift_;  // increment that takes it back
   long iterations_ = 0;

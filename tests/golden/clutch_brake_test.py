@@ -168,6 +168,20 @@ simulation: {end: 0.5 s, integrator: %s, accuracy: %r, output: {interval: 5 ms}}
                     self.assert_column(run, "force.brake.strain",
                                        lambda t: slipping(t)[0] if t < stick else held(t - stick)[0], 2 * accuracy)
 
+    def test_a_clutch_that_runs_free_from_rest_on_starts_with_every_integrator(self):
+        # 0.5 kg, whose strain stays zero: x'' = 24 t
+        for integrator in ("bathe", "newmark", "hht", "generalized-alpha", "dopri5", "verner7"):
+            for steps in ("accuracy: 1e-8", "accuracy: 1e-4", "step: 1 ms"):
+                with self.subTest(integrator=integrator, steps=steps):
+                    run = self.run_model("""bodies: {block: {mass: 0.5, inertia: 1e-4}}
+joints: {slide: {type: prismatic, between: [ground, block]}}
+forces: {c: {type: one-way-clutch, kind: linear, locks: negative, between: [ground, block], stiffness: 1e5, relaxation: 0.3 ms}}
+drivers: {pull: {joint: slide, kind: force, value: 12*t}}
+simulation: {end: 0.5 s, integrator: %s, %s, output: {interval: 10 ms}}
+""" % (integrator, steps))
+                    self.assert_column(run, "joint.slide.position", lambda t: 4 * t ** 3, 1e-5)
+                    self.assert_column(run, "force.c.strain", lambda t: 0.0, 1e-12)
+
     def test_what_no_coupling_can_be_is_refused_where_it_stands(self):
         text = SPACES["plane"][0] + "forces:\n  a: {type: %s, between: [ground, wheel], %s}\n"
         for name, keys, id in (("brake", "limit: 3, stiffness: 0", "out-of-range"), ("brake", "stiffness: 5", "missing-key"),
