@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/index.h"
 
@@ -97,6 +98,14 @@ bool LocalError::ask(int joint, int i, const Point& at, Answer& answer) {
   return true;
 }
 
+bool LocalError::ask_at(double z, int joint, int i, const Point& at, Answer& answer) {
+  double& own = other_z_[freeplay::at(equations_.system().joints()[joint].internal.offset + i)];
+  const double before = std::exchange(own, z);
+  const bool answered = ask(joint, i, at, answer);
+  own = before;
+  return answered;
+}
+
 double LocalError::part_of_idle(const StateView& end, std::span<const double> error) {
   const double part = position_ / equations_.system().size();
   std::copy_n(end.z.begin(), other_z_.size(), other_z_.begin());
@@ -110,16 +119,16 @@ double LocalError::part_of_idle(const StateView& end, std::span<const double> er
       const std::size_t k = freeplay::at(own.offset + i);
       double scale = std::max(most_z_[k], std::abs(end.z[k]));
       if (std::abs(error[k]) <= part * scale) continue;
-      const double change = scale > 0.0 ? part * scale : error[k];
-      Answer now, changed;
-      if (!ask(j, i, at, now)) continue;
-      other_z_[k] = end.z[k] + change;
-      const bool answered = ask(j, i, at, changed);
-      other_z_[k] = end.z[k];
+      // Large enough to be seen in wrenches, to either side: one may be that of where it acts.
+      const double probe = std::max(part * scale, position_);
+      Answer now, more, less;
+      if (!ask(j, i, at, now) || !ask_at(end.z[k] + probe, j, i, at, more) || !ask_at(end.z[k] - probe, j, i, at, less))
+        continue;
+      const bool idle_above = std::ranges::equal(now.wrenches, more.wrenches);
       // Where it moves something, its error is judged by that.
-      if (!answered || !std::ranges::equal(now.wrenches, changed.wrenches)) continue;
+      if (!idle_above && !std::ranges::equal(now.wrenches, less.wrenches)) continue;
       // One that begins to move from zero is compared with what it comes to while it forgets.
-      const double decay = std::abs((changed.rate - now.rate) / change);
+      const double decay = std::abs(((idle_above ? more : less).rate - now.rate) / probe);
       scale = std::max(scale, std::abs(now.rate) * std::min(longest_memory, 1.0 / decay));
       if (part * scale >= least_allowed) largest = std::max(largest, std::abs(error[k]) / (part * scale));
     }

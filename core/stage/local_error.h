@@ -60,6 +60,8 @@ class LocalError {
   };
   /// A joint's wrenches and the rate of its internal variable i with other_z_; false where it refuses.
   bool ask(int joint, int i, const Point& at, Answer& answer);
+  /// The same with another value of that variable.
+  bool ask_at(double z, int joint, int i, const Point& at, Answer& answer);
 
   StageEquations& equations_;
   IndexOneSolver& index_one_;
