@@ -11,6 +11,7 @@ namespace {
 
 constexpr double largest_turn = 1.0;    // of a joint in one step [rad]: angles are continued over turns
 constexpr double barely = 1.0 - 1e-6;   // of a step: what is shorter by the rounding of times alone is as long
+constexpr double close_ahead = 100.0;   // smallest steps
 constexpr double beside_a_root = 1.5;   // power of the step with which errors fall there
 constexpr int most_resolutions = 100;   // at what loads do inside one step
 constexpr double least_allowed = 64.0;  // roundings of positions and, per second, of velocities
@@ -149,6 +150,7 @@ AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
   search.hunted = {};
   search.at_force_kink = false;
   double& dt = search.dt;
+  const double tried = dt;
   if (converged) {
     control_.reject(dt, run_.error, search.hidden > 1.0 ? beside_a_root : unbounded);
     dt = pursuit_.before_event(dt, control_.next(), search.hunted);
@@ -158,6 +160,9 @@ AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
   }
   const double smallest = control_.limits().smallest;
   if (dt >= smallest) return Found::no;
+  if (converged && !look_ahead(tried, std::min(close_ahead * smallest, search.goal - run_.accepted.t()))) {
+    return Found::failed;
+  }
   if (run_.plugin_fault.kind != Fault::Kind::none) {
     parts_.failure.fail_with(run_.plugin_fault, run_.accepted.t());
   } else if (run_.solver.regularity() < stuck_there) {
@@ -167,6 +172,14 @@ AdaptiveRun::Found AdaptiveRun::shorten(Search& search, bool converged) {
         4, converged ? parts_.failure.why_so_small(dt, smallest, -1) : parts_.failure.why_not_converged(dt));
   }
   return Found::failed;
+}
+
+// Forces that bend ever more may end just ahead, as at the edge of what a formula is for: that is why steps come to
+// nothing, and is then the fault. Else all is left as after the attempt of the length `tried`.
+bool AdaptiveRun::look_ahead(double tried, double dt) {
+  bool converged = false;
+  if (!parts_.attempt.make(dt, converged)) return false;
+  return run_.plugin_fault.kind != Fault::Kind::none || parts_.attempt.make(tried, converged);
 }
 
 // A step that erred little enough may still gain energy, go over what joints do inside, or pass an event.

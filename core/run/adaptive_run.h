@@ -53,6 +53,7 @@ class AdaptiveRun {
   bool begin_search(double until, Search& search);
   Found attempt(Search& search);
   Found shorten(Search& search, bool converged);
+  bool look_ahead(double tried, double dt);
   Found judge(Search& search);
   bool resolve_motion_loads(Search& search, double& dt);
   Found end_at_force_kink(Search& search);
