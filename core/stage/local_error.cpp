@@ -22,7 +22,9 @@ LocalError::LocalError(StageEquations& equations, IndexOneSolver& index_one)
   most_z_ = other_z_ = other_rate_ = numbers(layout.nz());
   const Joints& joints = equations.system().joints();
   for (int j = 0; j < joints.count(); ++j) {
-    if (joints.layout(j).forces != 0 && joints[j].internal.size > 0) with_memory_.push_back(j);
+    // The memory of a contact begins anew with each, and acts as long as it presses.
+    if (joints.layout(j).forces != 0 && joints[j].internal.size > 0 && !(joints.layout(j).clearance > 0.0))
+      with_memory_.push_back(j);
   }
 }
 

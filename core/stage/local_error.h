@@ -71,7 +71,7 @@ class LocalError {
   std::vector<double> motion_;                                         // part of an error along the motion
   std::vector<double> most_z_;                                         // largest amounts of accepted states
   std::vector<double> other_a_, other_lambda_, other_z_, other_rate_;  // with the internal variables in error
-  std::vector<int> with_memory_;                                       // joints with internal variables
+  std::vector<int> with_memory_;  // joints with internal variables, but for those with play
 };
 
 }  // namespace freeplay
