@@ -10,12 +10,12 @@
 namespace freeplay {
 namespace {
 
-constexpr double same_place = 1e-6;  // by the size of the model
+constexpr double same_joint_place = 1e-6;  // by the size of the model
 
 class DoubledPlays {
  public:
   DoubledPlays(const System& closed, const Evaluation& shut)
-      : model_(closed.model()), shut_(shut), near_(same_place * closed.size()) {}
+      : model_(closed.model()), shut_(shut), near_(same_joint_place * closed.size()) {}
 
   bool are_same(const JointElement& one, const JointElement& other) const {
     if (!one.has_play || !other.has_play || one.component != other.component) return false;
