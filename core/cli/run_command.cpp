@@ -259,8 +259,9 @@ class RunJob {
     if (common_.json) {
       print_json(json);
     } else if (!common_.quiet) {
-      print(run_table(record) + moved_text(*loaded_.model, assembled_.start.report) +
-            (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
+      print(run_table(record) + left_free_text(*loaded_.model, assembled_.start.structure) +
+            moved_text(*loaded_.model, assembled_.start.report) + (verification ? verify_table(*verification) : "") +
+            fmt::format("  results in {}\n", path_.string()) +
             (outcome.exit_code == 6 ? "" : glance(path_, options_.report)));
     }
     if (options_.profile) {

@@ -13,6 +13,8 @@ namespace freeplay {
 std::string facts_text(const Model& model, const ModelFacts& facts);
 /// Further lines: bodies that are left free beside the drivers, joints whose forces are not determined.
 std::string structure_text(const Structure& structure);
+/// For the table of a run: what moves in a mechanism whose drivers rest, where nothing else says so.
+std::string left_free_text(const Model& model, const Structure& structure);
 
 Json facts_json(const Model& model, const ModelFacts& facts, const Structure& structure = {});
 
