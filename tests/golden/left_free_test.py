@@ -74,6 +74,16 @@ class LeftFree(ProgramTest):
             with self.subTest(place):
                 self.assertEqual([], self.doubts(CRANE % place))
 
+    def test_a_run_names_what_moves_although_no_doubt_does(self):
+        words = "with all drivers at rest 'hook' still moves: where that is not meant, a joint is missing"
+        text = (CRANE % "0, 1").replace("end: 15 s", "end: 0.1 s")
+        self.assertIn(words, self.freeplay("run", self.write("m.yaml", text), "--out", "r")[0])
+        for old, new in (("0, 1", "4, 5"), ("drivers: {drive: {joint: rail, kind: position, value: \"6 m*smooth(t, 1 s, 8 s)\"}}\n", "")):
+            with self.subTest(new):  # a doubt says it, or there is no driver
+                self.assertIn(old, text)
+                self.write("m.yaml", text.replace(old, new))
+                self.assertNotIn("still move", self.freeplay("run", "m.yaml", "--out", "r", "--force")[0])
+
     def test_what_springs_hold_on_a_table_starts_where_it_is_given(self):
         self.assertEqual([], self.doubts(SHAKER))
         pinned = self.doubts(SHAKER, **{"type: planar": "type: spherical"})

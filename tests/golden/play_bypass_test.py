@@ -101,6 +101,18 @@ class PlayBypass(ProgramTest):
                 model = text % (b, c, end, 0.19 if "off" in end else 0.2)
                 self.assertEqual([m.replace("'one'", f"'{found}'") for m in expected] if found else [], self.bypass(model))
 
+    def test_the_same_play_twice_is_doubted(self):
+        loose = "clearance: {bearing_radius: 8 mm, radial_clearance: 0.05 mm, %scontact: {law: hertz, K: 1e9}}"
+        for (kind, words), more, found in [
+                (PIN, "type: revolute, between: [rotor, ground], " + loose % "length: 10 mm, ", 1),
+                (BALL, "type: spherical, between: [ground, rotor/near], " + loose % "", 1),
+                (SLEEVE, "type: cylindrical, between: [ground/far, rotor/far], " + loose % "length: 10 mm, ", 0),
+                (PIN, "type: revolute, between: [ground/far, rotor/far], " + loose % "length: 10 mm, ", 0)]:
+            with self.subTest((kind, more)):
+                text = SHAFT % (kind, words, more)
+                messages = json.loads(self.freeplay("validate", self.write("m.yaml", text), "--json")[0])["messages"]
+                self.assertEqual(found, len([m for m in messages if m["id"] == "duplicate-joint" and "'more' has the same play as 'one'" in m["message"]]))
+
 
 if __name__ == "__main__":
     unittest.main()
