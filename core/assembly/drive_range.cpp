@@ -31,7 +31,7 @@ constexpr double leaps[] = {0.01, 0.03, 0.1};               // over a singular p
 constexpr double closed_range = 1e-5;                       // less is no range
 constexpr std::size_t most_branches = 8, few_branches = 2;  // that are looked at; each is followed both ways
 constexpr int many_velocities = 45;
-constexpr int most_way_steps = 2000;  // of a way: a finer one, as of a nut by its screw, is held to have no end
+constexpr int most_way_steps = 2000;  // of a way: a finer one, as of a thread, is held to have no end
 
 // The way of the last lead of a mechanism in one direction.
 class Way {

@@ -252,16 +252,14 @@ class RunJob {
     json["performance"]["resumed_from"] = checkpoints_.resumed_from();
     const int exit_code = repeats_ ? add_repeats(record, outcome, json) : outcome.exit_code;
     seal(json, outcome);
-    if (outcome.exit_code != 0 && outcome.status == RunStatus::failed) {
-      const char* id = outcome.exit_code == 6 ? " [cannot-write]" : "";
+    const char* id = outcome.exit_code == 6 ? " [cannot-write]" : "";
+    if (outcome.exit_code != 0 && outcome.status == RunStatus::failed)
       print_messages(fmt::format("freeplay: error: {}{}\n", outcome.reason, id), common_.no_color);
-    }
     if (common_.json) {
       print_json(json);
     } else if (!common_.quiet) {
-      print(run_table(record) + left_free_text(*loaded_.model, assembled_.start.structure) +
-            moved_text(*loaded_.model, assembled_.start.report) + (verification ? verify_table(*verification) : "") +
-            fmt::format("  results in {}\n", path_.string()) +
+      print(run_table(record) + start_text(*loaded_.model, assembled_.start) +
+            (verification ? verify_table(*verification) : "") + fmt::format("  results in {}\n", path_.string()) +
             (outcome.exit_code == 6 ? "" : glance(path_, options_.report)));
     }
     if (options_.profile) {

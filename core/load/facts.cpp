@@ -66,19 +66,6 @@ std::string structure_text(const Structure& structure) {
   return list("left_free", structure.left_free) + list("undetermined", structure.undetermined);
 }
 
-std::string left_free_text(const Model& model, const Structure& structure) {
-  constexpr std::size_t most_names = 5;
-  const std::vector<std::string>& bodies = structure.left_free;
-  const auto doubted = [](const StructureDoubt& doubt) { return doubt.id == "left-free"; };
-  if (bodies.empty() || model.drivers.empty() || std::ranges::any_of(structure.doubts, doubted)) return {};
-  const std::size_t shown = std::min(bodies.size(), most_names);
-  std::string names = fmt::format("'{}'", fmt::join(bodies.begin(), bodies.begin() + static_cast<long>(shown), "', '"));
-  if (shown < bodies.size()) names += fmt::format(" and {} more", bodies.size() - shown);
-  return fmt::format(
-      "  {:<18}  with all drivers at rest {} still move{}: where that is not meant, a joint is missing\n", "left_free",
-      names, bodies.size() == 1 ? "s" : "");
-}
-
 Json facts_json(const Model& model, const ModelFacts& facts, const Structure& structure) {
   const ConstraintFacts& actual = facts.actual;
   return {{"space", space_word(model)},
@@ -114,6 +101,21 @@ std::string moved_text(const Model& model, const StartReport& report) {
     text += fmt::format("  {:<18}  and {} more: validate --json has all\n", "", lines->size() - most_lines);
   }
   return text;
+}
+
+std::string start_text(const Model& model, const Start& start) {
+  constexpr std::size_t most_names = 5;
+  const std::vector<std::string>& bodies = start.structure.left_free;
+  const std::string moved = moved_text(model, start.report);
+  const auto doubted = [](const StructureDoubt& doubt) { return doubt.id == "left-free"; };
+  if (bodies.empty() || model.drivers.empty() || std::ranges::any_of(start.structure.doubts, doubted)) return moved;
+  const std::size_t shown = std::min(bodies.size(), most_names);
+  std::string names = fmt::format("'{}'", fmt::join(bodies.begin(), bodies.begin() + static_cast<long>(shown), "', '"));
+  if (shown < bodies.size()) names += fmt::format(" and {} more", bodies.size() - shown);
+  const std::string free = fmt::format(
+      "  {:<18}  with all drivers at rest {} still move{}: where that is not meant, a joint is missing\n", "left_free",
+      names, bodies.size() == 1 ? "s" : "");
+  return free + moved;
 }
 
 Json start_json(const Model& model, const Start& start) {

@@ -17,7 +17,7 @@ namespace freeplay {
 /// accepted states.
 class ContactLedger {
  public:
-  ContactLedger(const Joints& joints, const Channels& channels);
+  [[gnu::cold]] ContactLedger(const Joints& joints, const Channels& channels);
 
   bool active() const { return !joints_.empty(); }
   /// An accepted state, at the end of a step or at the start of the run, with its row, with what joints lost since the

@@ -24,7 +24,8 @@ class ContactRows {
   using Give = std::function<void(std::span<const double> row, bool of_grid)>;
 
   /// `looks_inside`: rows can be had from inside steps.
-  ContactRows(const System& system, const Channels& channels, const Statistics& statistics, bool looks_inside);
+  [[gnu::cold]] ContactRows(const System& system, const Channels& channels, const Statistics& statistics,
+                            bool looks_inside);
 
   /// Whether there can be such rows at all; without them nothing else is to be called.
   bool active() const { return !joints_.empty(); }

@@ -18,7 +18,7 @@ namespace freeplay {
 /// Where a function that returns a bool returns false the run is over, unless it says otherwise.
 class Corners {
  public:
-  Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt);
+  [[gnu::cold]] Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt);
 
   /// For tests of what finds wrong runs: steps go over what inputs do inside them.
   void go_blind() { inputs_.reset(); }

@@ -28,7 +28,7 @@ class DriveKinks {
   }
 
  private:
-  void add(const Expression& expression, const Settings& settings);
+  [[gnu::cold]] void add(const Expression& expression, const Settings& settings);
 
   std::vector<FormulaCourse> formulas_;
   std::vector<const TimeTable*> tables_;

@@ -72,7 +72,7 @@ class InputActivity {
   /// ends of steps that these do not show, and loads that jump inside of steps so that these are off by a tenth. Joints
   /// are looked at as `here` has their markers, variables and history.
   static constexpr double off_by_jumps = 0.1;
-  std::vector<Unresolved> unresolved_by(double step, const Point& here, const Evaluation& e);
+  [[gnu::cold]] std::vector<Unresolved> unresolved_by(double step, const Point& here, const Evaluation& e);
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

@@ -62,7 +62,9 @@ class MotionLoads {
     int steps_to_box = 0;     ///< before that is worth while
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.low, self.high, self.beyond, self.at, self.impulse);
+      archive(self.low, self.high, self.beyond, self.at, self.impulse, self.end_time, self.end_value);
+      archive(self.in_box.low, self.in_box.high, self.box_until, self.box_steps, self.steps_to_box);
+      archive.doubles(self.box);
     }
   };
   struct Load {
@@ -73,7 +75,7 @@ class MotionLoads {
     std::vector<double> end_values{};  ///< of its channels, of the step before
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.formulas);
+      archive(self.formulas, self.end_values);
     }
   };
   /// What a formula is compared with.

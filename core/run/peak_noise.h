@@ -37,7 +37,7 @@ namespace freeplay {
 /// value and step.
 class PeakNoise {
  public:
-  PeakNoise(const Model& model, const PeakValues& places);
+  [[gnu::cold]] PeakNoise(const Model& model, const PeakValues& places);
 
   /// Values inside the window of the statistics, in rising order of time [s].
   void see(double t, std::span<const double> values) {

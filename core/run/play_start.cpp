@@ -65,8 +65,8 @@ void slide(const Vector3& ball, double reach, double* e) {
 }
 
 /// Start `number` of a repeated run, as `assembled` puts it together.
-Start moved_start(System& system, std::uint64_t seed, std::uint64_t number,
-                  Start (*assembled)(System&, const OffsetChange&)) {
+[[gnu::cold]] Start moved_start(System& system, std::uint64_t seed, std::uint64_t number,
+                                Start (*assembled)(System&, const OffsetChange&)) {
   const Start own = assemble_bare(system);
   const Model& model = system.model();
   const std::vector<bool> rests = touching(system, own);
@@ -96,8 +96,8 @@ Start moved_start(System& system, std::uint64_t seed, std::uint64_t number,
 }
 
 /// The same for a model without play: pushed.
-Start pushed_start(System& system, std::uint64_t seed, std::uint64_t number,
-                   Start (*assembled)(System&, const OffsetChange&)) {
+[[gnu::cold]] Start pushed_start(System& system, std::uint64_t seed, std::uint64_t number,
+                                 Start (*assembled)(System&, const OffsetChange&)) {
   Start start = assembled(system, {});
   const Model& model = system.model();
   State& state = start.state;

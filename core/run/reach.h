@@ -10,6 +10,6 @@ namespace freeplay {
 /// Upper bound of the distance of each body's centre of mass from the world's origin [m]: along the shortest chain of
 /// frames and of joints that hold two origins together, or would without their play; of these clearance and smaller
 /// radius count, or ten times the clearance. Infinite where no such chain leads to the ground.
-std::vector<double> reach(const Model& model);
+[[gnu::cold]] std::vector<double> reach(const Model& model);
 
 }  // namespace freeplay

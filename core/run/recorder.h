@@ -22,8 +22,8 @@ namespace freeplay {
 /// Where a function returns false the run is over, with its outcome filled.
 class Recorder {
  public:
-  Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside,
-           std::span<Sink* const> sinks);
+  [[gnu::cold]] Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside,
+                         std::span<Sink* const> sinks);
 
   /// The row of the start, with which the account of energy begins.
   bool observe_start();

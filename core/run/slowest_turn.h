@@ -12,6 +12,6 @@ struct SlowestTurn {
 
 /// Of the joints that turn in a fixed ratio with this one, through gears and through strands round wheels that turn on
 /// ground, the slowest; the joint itself where none is slower.
-SlowestTurn slowest_turn(const Model& model, int joint);
+[[gnu::cold]] SlowestTurn slowest_turn(const Model& model, int joint);
 
 }  // namespace freeplay

@@ -26,8 +26,8 @@ class StepEvents {
 
   /// `located`: events that are located are handled by apply_at_end() and left alone by apply(). `between` and
   /// `e_between` are lent for each call: what they hold does not matter, and is lost.
-  StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
-             KeptEvaluation& e_between);
+  [[gnu::cold]] StepEvents(const System& system, const EvaluationContext& context, bool located, State& between,
+                           KeptEvaluation& e_between);
 
   /// What positions may err by in a step [m], with error control.
   void allow(double error) { switches_.allow(error); }
@@ -79,7 +79,7 @@ class StepEvents {
   bool changed() const { return !happenings_.empty() || switched_; }
   bool switched() const { return switched_; }
   /// "event 'x' of joint 'y'", for messages.
-  std::string words(const Passage& passage) const;
+  [[gnu::cold]] std::string words(const Passage& passage) const;
   /// The force or driver whose formula changed its form last.
   std::string switched_words() const { return switches_.words(last_switch_); }
 

@@ -26,16 +26,17 @@ class UnseenChange {
   /// The first of [from, to] in steps of `step` [s]; `derivative` is 0, 1 or 2. Formulas are bounded over spans of
   /// time, so that no change is too short, until a bounded amount of work is done. Between two corners that are no more
   /// than `cut_form` and four steps apart steps are a quarter of that, and end at both [s].
-  static std::optional<Found> of(const Expression& formula, double from, double to, double step, int derivative,
-                                 double cut_form = 0.0);
+  [[gnu::cold]] static std::optional<Found> of(const Expression& formula, double from, double to, double step,
+                                               int derivative, double cut_form = 0.0);
   /// Of tables by their points and the middles between them.
-  static std::optional<Found> of(const TimeTable& table, double from, double to, double step, int derivative);
+  [[gnu::cold]] static std::optional<Found> of(const TimeTable& table, double from, double to, double step,
+                                               int derivative);
   /// Of signals that can be looked at alone: fills them at a time; false where it cannot.
   using Look = std::function<bool(double t, std::span<double> values)>;
   /// The one that is farthest from what the ends of four steps show, at instants no more than `apart` from each other,
   /// a bounded number of times [s]. What may jump is compared with their range.
-  static std::optional<Found> of(const Look& look, std::size_t signals, double from, double to, double step,
-                                 double apart);
+  [[gnu::cold]] static std::optional<Found> of(const Look& look, std::size_t signals, double from, double to,
+                                               double step, double apart);
 
  private:
   UnseenChange(double from, double to, double step, int derivative)
