@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <cmath>
+#include <exception>
+#include <numbers>
 #include <vector>
 
 #include "axis_force.h"
@@ -69,15 +72,19 @@ struct Spring {
     if (!spring) return linear;
     double known = 0.0;
     if (spring.integral(0.0, stretch, known)) return linear + known;
+    if (repeats) {
+      const double turns = std::floor(stretch / whole_turn);
+      return linear + turns * pulled.at(whole_turn) + pulled.at(stretch - turns * whole_turn);
+    }
     return linear + (stretch < 0.0 ? pressed.at(stretch) : pulled.at(stretch));
   }
   /// A sentence where a function makes a stiffness or a damping negative, or the ends of a linear spring are as good as
   /// at one place; else null.
   const char* doubt(const JointInput& in, double length) const {
     if (!in.functions.empty()) {
-      if (in.functions[0] < 0.0)
+      if (in.functions[0] < below_zero)
         return "The stiffness is negative here: the spring drives away from where it is slack.";
-      if (in.functions[1] < 0.0) return "The damping is negative here: it drives the motion.";
+      if (in.functions[1] < below_zero) return "The damping is negative here: it drives the motion.";
     }
     if (kind != linear || !(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
     return "The spring is pressed together to less than a twentieth of its free length, as none can be; beyond that it "
@@ -104,6 +111,7 @@ struct Spring {
     }
   }
 
+  static constexpr double below_zero = -1e-9;   ///< nearer to it a formula that fades out is rounded
   static constexpr double most_pressed = 0.05;  ///< coils lie on each other at a third or more
 
   Kind kind;
@@ -115,10 +123,35 @@ struct Spring {
     double known = 0.0;
     if (spring.integral(0.0, 1.0, known)) return;
     const auto force = [formula = spring](double stretch) { return formula.at({&stretch, 1}); };
-    const std::vector<double> corners = FormulaCorners::of(spring, smallest_stretch, largest_stretch);
-    pulled = IntegralFromZero(force, smallest_stretch, largest_stretch, corners);
+    repeats = kind == rotational && repeats_each_turn(force);
+    const double most = repeats ? 1.01 * whole_turn : largest_stretch;
+    const std::vector<double> corners = FormulaCorners::of(spring, smallest_stretch, most);
+    pulled = IntegralFromZero(force, smallest_stretch, most, corners);
+    if (repeats) return;
     pressed = IntegralFromZero(force, smallest_stretch, -largest_stretch, corners);
   }
+  /// Whether the torque is the same in every turn, as the cogging of a motor: then one turn says all of it.
+  template <class Force>
+  bool repeats_each_turn(const Force& force) const {
+    constexpr int places = 64;
+    constexpr double alike = 1e-9, golden = 0.6180339887498949;
+    if (spring.switches() > 0) return false;
+    double largest = 0.0, off = 0.0;
+    try {
+      for (int i = 0; i < places; ++i) {
+        const double x = whole_turn * (golden * i - std::floor(golden * i)), here = force(x);
+        largest = std::max(largest, std::abs(here));
+        for (const double turns : {-2.0, -1.0, 1.0, 2.0, 3.0, 11.0}) {
+          off = std::max(off, std::abs(force(x + turns * whole_turn) - here));
+        }
+      }
+    } catch (const std::exception&) {
+      return false;  // somewhere it has no value
+    }
+    return off <= alike * largest;
+  }
+  static constexpr double whole_turn = 2.0 * std::numbers::pi;
+  bool repeats = false;
   static constexpr double smallest_stretch = 0x1p-20, largest_stretch = 0x1p10;  // [m or rad]
   IntegralFromZero pulled, pressed;
 };

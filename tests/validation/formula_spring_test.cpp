@@ -117,6 +117,39 @@ TEST(FormulaSpring, ABumpIsMetAndItsEnergyStoredHoweverNarrowItIs) {
 }
 
 // The angle of a dial counts over turns: 0.2 N m exp(-((x - a)/0.02)^2) takes 0.004 sqrt(pi) J of 0.5 0.01 10^2 J.
+// The cogging of a motor over sixteen turns, and the poles of a linear one.
+TEST(FormulaSpring, OfManyPeriodsStoresWhatTheyAddUpTo) {
+  const double speed = 100.0, torque = 0.5;
+  for (const double periods : {8.0, 36.0, 72.0}) {
+    const ModelRun run(
+        "freeplay: 1\nbodies: {rotor: {mass: 1, inertia: 0.01}}\n"
+        "joints: {hub: {type: revolute, between: [ground, rotor]}}\n"
+        "forces: {cog: {type: spring-damper, kind: rotational, between: [ground, rotor], spring: \"" +
+        number(torque) + " N*m*sin(" + number(periods) + "*x)\"}}\ninitial: {speeds: {hub: " + number(speed) +
+        "}}\nsimulation: {end: 1, accuracy: 1e-6, output: {interval: 0.01}}\n");
+    for (std::size_t row = 0; row < run.rows(); ++row) {
+      const double angle = run.at(row, "joint.hub.angle");
+      EXPECT_NEAR(run.at(row, "energy.potential"), torque / periods * (1.0 - std::cos(periods * angle)), 1e-9);
+    }
+  }
+  const ModelRun run(sled("spring: \"50 N*sin(2*pi*x/(5 mm))\"", 0.0, 10.0, "end: 0.3, accuracy: 1e-6"));
+  const double wave = 2.0 * M_PI / 5e-3;
+  for (std::size_t row = 0; row < run.rows(); ++row) {
+    const double way = run.at(row, "joint.rail.position") - 1.0;
+    EXPECT_NEAR(run.at(row, "energy.potential"), 50.0 / wave * (1.0 - std::cos(wave * way)), 1e-8);
+  }
+}
+
+// A product of functions that fade out is a rounding below zero at its end.
+TEST(FormulaSpring, ADampingThatFadesOutIsNotDoubted) {
+  const ModelRun run(sled("damping: \"60 N*s/m*smooth(t, 0.12 s, 0.13 s)*(1 - smooth(t, 0.13 s, 0.14 s))\"", 0.0, 1.0,
+                          "end: 0.3, accuracy: 1e-6"));
+  EXPECT_EQ(run.outcome().doubts.size(), 0U);
+  const ModelRun negative(
+      sled("damping: \"-1e-3 N*s/m*smooth(t, 0.12 s, 0.13 s)\"", 0.0, 1.0, "end: 0.3, accuracy: 1e-6"));
+  EXPECT_EQ(negative.outcome().doubts.size(), 1U);
+}
+
 TEST(FormulaSpring, ABumpOfATurnIsMetInFewSteps) {
   for (const char* place : {"1", "7"}) {
     for (const char* integrator : {"dopri5", "verner7", "bathe"}) {

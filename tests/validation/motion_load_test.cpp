@@ -148,7 +148,9 @@ TEST(MotionLoad, ThatStepsOfOneSizeGoOverIsDoubted) {
        {"5000 N*exp(-((body.m.x - 0.5071)/(0.4 mm))^2)", "5000 N*if((body.m.x - 0.5071)^2 < 0.16 mm^2, 1, 0)",
         "5000 N*max(0, 1 - abs(body.m.x - 0.5071)/(0.4 mm))"}) {
     EXPECT_EQ(unresolved(sled(bump, "step: 2 ms")), 1u) << bump;
-    EXPECT_EQ(unresolved(sled(bump, "step: 0.01 ms")), 0u) << bump;
+    // A window with edges wants shorter steps: by 0.1 ms it ends with 3.5 m/s in place of 3.
+    const bool edges = std::string(bump).find("if(") != std::string::npos;
+    EXPECT_EQ(unresolved(sled(bump, edges ? "step: 0.01 ms" : "step: 0.1 ms")), 0u) << bump;
   }
   for (const char* even :
        {"-100 N/m*body.m.x", "-5 N*(2*smooth(body.m.vx, -0.1, 0.1) - 1)", "-50 N*sin(10 m^-1*body.m.x)",

@@ -16,8 +16,8 @@ namespace freeplay {
 
 /// F(x) = integral of f from 0 to x, to 1e-10 of the area below |f|. Made once, as polynomials on cells of which each
 /// ends twice as far from 0 as the one before and is cut where f is not smooth, so that a small x keeps its digits; a
-/// value costs no call of f. What is smooth and lasts less than a 256th of such a cell may be missed. Immutable once it
-/// is made.
+/// value costs no call of f. What is smooth and lasts less than a 256th of such a cell may be missed, and so are periods
+/// below a 2000th of it. Immutable once it is made.
 class IntegralFromZero {
  public:
   IntegralFromZero() = default;
@@ -30,7 +30,7 @@ class IntegralFromZero {
     std::sort(corners.begin(), corners.end());
     double from = 0.0;
     for (double to = first; from < sign_ * end && whole_; to *= 2.0) {
-      most_cells_ = starts_.size() + most_cells;
+      fine_cells_ = 0;
       nothing_ = rounded * largest(from, to);
       const auto corner = std::upper_bound(corners.begin(), corners.end(), from);
       const auto last = std::lower_bound(corner, corners.end(), to);
@@ -56,7 +56,8 @@ class IntegralFromZero {
 
  private:
   static constexpr std::size_t nodes = 14;
-  static constexpr std::size_t most_cells = 128;  // of one doubling: where f is mere rounding none is smooth
+  // A period of f may be a 2000th of a doubling. Finer cells are for its kinks: where it is mere rounding none is smooth.
+  static constexpr int coarse_cuts = 13, most_fine_cells = 128;
   static constexpr int most_cuts = 40, most_cuts_at_end = 10;
   static constexpr int checks = 256;  // of an uncut cell, for what its nodes may have missed
   static constexpr double seen = 1e-6, end_of_cell = 1.0 - 1e-9;
@@ -118,7 +119,7 @@ class IntegralFromZero {
     }
     Cell cell;
     const bool smooth = good && expand(f, from, to, cell) && shows(cell, from, to, cuts < 8 ? checks >> cuts : 0);
-    const bool last = cuts >= (good ? most_cuts : most_cuts_at_end) || starts_.size() >= most_cells_;
+    const bool last = cuts >= (good ? most_cuts : most_cuts_at_end) || fine_cells_ >= most_fine_cells;
     if (!smooth && !last) {
       const double middle = 0.5 * (from + to);
       add(from, middle, cuts + 1);
@@ -131,6 +132,7 @@ class IntegralFromZero {
     cell.c[0] = total_ - cell.value(-1.0);
     starts_.push_back(from);
     cells_.push_back(cell);
+    if (cuts > coarse_cuts) ++fine_cells_;
     end_ = to;
     total_ = cell.value(1.0);
   }
@@ -195,7 +197,7 @@ class IntegralFromZero {
   std::function<double(double)> f_;
   double sign_ = 1.0, end_ = 0.0, total_ = 0.0, nothing_ = 0.0;
   bool whole_ = true;
-  std::size_t most_cells_ = 0;
+  int fine_cells_ = 0;  // of the doubling
   std::vector<double> starts_;
   std::vector<Cell> cells_;
 };
