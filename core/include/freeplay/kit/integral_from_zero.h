@@ -16,8 +16,8 @@ namespace freeplay {
 
 /// F(x) = integral of f from 0 to x, to 1e-10 of the area below |f|. Made once, as polynomials on cells of which each
 /// ends twice as far from 0 as the one before and is cut where f is not smooth, so that a small x keeps its digits; a
-/// value costs no call of f. What is smooth and lasts less than a 256th of such a cell may be missed, and so are periods
-/// below a 2000th of it. Immutable once it is made.
+/// value costs no call of f. What is smooth and lasts less than a 256th of such a cell may be missed, and so are
+/// periods below a 2000th of it. Immutable once it is made.
 class IntegralFromZero {
  public:
   IntegralFromZero() = default;
@@ -56,7 +56,8 @@ class IntegralFromZero {
 
  private:
   static constexpr std::size_t nodes = 14;
-  // A period of f may be a 2000th of a doubling. Finer cells are for its kinks: where it is mere rounding none is smooth.
+  // A period of f may be a 2000th of a doubling. Finer cells are for its kinks: where it is mere rounding none is
+  // smooth.
   static constexpr int coarse_cuts = 13, most_fine_cells = 128;
   static constexpr int most_cuts = 40, most_cuts_at_end = 10;
   static constexpr int checks = 256;  // of an uncut cell, for what its nodes may have missed
