@@ -7,9 +7,9 @@ namespace freeplay {
 namespace {
 
 constexpr double most_steps_to_sum = 5e6;
-constexpr double side_of_jump = 1e-9;  // of a step: there a load is on one side
-constexpr double least_jump = 1e-9;    // of its values on both sides
-constexpr double whole_step = 1e-6;    // of a step, as FixedRun counts them
+constexpr double side_of_jump = 1e-9;    // of a step: there a load is on one side
+constexpr double seen_jump_part = 1e-9;  // of its values on both sides
+constexpr double whole_step = 1e-6;      // of a step, as FixedRun counts them
 
 bool jumps_at(const Expression& formula, double t, double side) {
   Jet before, after;
@@ -17,7 +17,7 @@ bool jumps_at(const Expression& formula, double t, double side) {
   if (!formula.evaluate(t - side, before, failure) || !formula.evaluate(t + side, after, failure)) return false;
   const double rates = std::abs(before.rate) + std::abs(after.rate);
   return std::abs(after.value - before.value) >
-         least_jump * std::max(std::abs(before.value), std::abs(after.value)) + 4.0 * side * rates;
+         seen_jump_part * std::max(std::abs(before.value), std::abs(after.value)) + 4.0 * side * rates;
 }
 
 /// Sums of a load, and of what steps are off it.
