@@ -148,7 +148,7 @@ struct Spring {
     } catch (const std::exception&) {
       return false;  // somewhere it has no value
     }
-    return off <= alike * largest;
+    return largest > 0.0 && off <= alike * largest;  // where nothing is seen a detent may stand between
   }
   static constexpr double whole_turn = 2.0 * std::numbers::pi;
   bool repeats = false;
