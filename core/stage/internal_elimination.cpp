@@ -124,8 +124,7 @@ double InternalElimination::advance(std::span<const double> change, double beta_
         if (body != ground) sum += slope(block, i, c) * change[at(width * body + c % width)];
       }
       z_rate[index] += sum;
-      // What is left of a rate that comes to zero, as in a clutch that runs free from its first step on, is no part of
-      // it.
+      // A rate that converges to zero, as in a clutch that is free from its first step on, ends at its rounding.
       largest_rate[index] = std::max(largest_rate[index], std::abs(z_rate[index]));
       if (std::abs(z_rate[index]) <= left_over * largest_rate[index]) z_rate[index] = 0.0;
       const double size = std::max({std::abs(z[index]), beta_z * std::abs(z_rate[index]), vanishing});

@@ -37,7 +37,7 @@ class InternalElimination {
   void add_to_right(std::span<const double> internal_rate, std::span<const double> z_rate, std::span<double> right);
   /// z' += W (r_z + B da). Returns the largest change of z relative to its size (z itself or what it gains
   /// in a stage, and at least a small part of that of the joint's largest variable). `largest_rate` has the largest
-  /// amounts of z' in this stage, 0 at its start: what is left of these by rounding is taken for 0.
+  /// amounts of z' in this stage, 0 at its start: a z' within their rounding is set to 0.
   double advance(std::span<const double> change, double beta_z, std::span<const double> z, std::span<double> z_rate,
                  std::span<double> largest_rate) const;
 
