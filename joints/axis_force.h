@@ -4,6 +4,12 @@
 #include "freeplay/plugin.h"
 #include "relative_motion.h"
 
+namespace freeplay {
+/// A limit, friction, stiffness or damping above this is not negative: one that fades out by a formula ends at
+/// rounding.
+constexpr double below_zero = -1e-9;
+}  // namespace freeplay
+
 namespace freeplay::space {
 
 /// Where and how fast marker b moves in the axes of a: along x_a [m], or about z_a [rad, counted over turns] with u the

@@ -19,7 +19,7 @@ class BrakeBounds {
     return both;
   }
   const char* doubt(const JointInput& in) const {
-    return limit(in) < -1e-9 ? "The limit is negative here; the brake is open." : nullptr;
+    return limit(in) < below_zero ? "The limit is negative here; the brake is open." : nullptr;
   }
 
  private:

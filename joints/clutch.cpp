@@ -25,7 +25,7 @@ class ClutchBounds {
     return {upwards_ ? up : down, limited_ ? 4u : 2u};
   }
   const char* doubt(const JointInput& in) const {
-    return limited_ && given(in) < -1e-9 ? "The limit is negative here; the clutch is open." : nullptr;
+    return limited_ && given(in) < below_zero ? "The limit is negative here; the clutch is open." : nullptr;
   }
 
  private:

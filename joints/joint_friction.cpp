@@ -18,7 +18,7 @@ class DryFriction {
     return space::chained(size * t, 0.0, s, size * (1.0 - t * t) / vs_, rate);
   }
   const char* doubt(const JointInput& in) const {
-    return in.function(0, size_) < -1e-9 ? "The friction is negative here; there is none." : nullptr;
+    return in.function(0, size_) < below_zero ? "The friction is negative here; there is none." : nullptr;
   }
   double stored(double) const { return 0.0; }
   double stored_rate(double, double) const { return 0.0; }

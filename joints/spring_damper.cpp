@@ -111,7 +111,6 @@ struct Spring {
     }
   }
 
-  static constexpr double below_zero = -1e-9;   ///< nearer to it a formula that fades out is rounded
   static constexpr double most_pressed = 0.05;  ///< coils lie on each other at a third or more
 
   Kind kind;
