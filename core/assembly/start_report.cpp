@@ -203,10 +203,12 @@ std::string sentence(const TwinStart& twin) {
 
 std::string sentence(const Model& model, const ChosenSpeed& chosen) {
   if (chosen.body >= 0) {
-    return fmt::format(
-        "body '{}' starts at {:.4g} m/s and {:.4g} rad/s by least kinetic energy: the file leaves its "
-        "velocity open",
-        model.bodies[at(chosen.body)].name, chosen.speed, chosen.angular_speed);
+    std::string speeds;
+    if (chosen.speed > 0.0) speeds = fmt::format("{:.4g} m/s", chosen.speed);
+    if (chosen.angular_speed > 0.0)
+      speeds += fmt::format("{}{:.4g} rad/s", speeds.empty() ? "" : " and ", chosen.angular_speed);
+    return fmt::format("body '{}' starts at {} by least kinetic energy: the file leaves its velocity open",
+                       model.bodies[at(chosen.body)].name, speeds);
   }
   const JointElement& joint = model.joints[at(chosen.joint)];
   const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;

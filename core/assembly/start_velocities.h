@@ -13,8 +13,8 @@ namespace freeplay {
 struct ChosenSpeed {
   int joint = -1;              ///< index into Model::joints, or -1
   int body = -1;               ///< index into Model::bodies, or -1
-  double speed = 0.0;          ///< of the joint; of the body's centre of mass [m/s]
-  double angular_speed = 0.0;  ///< of the body [rad/s]
+  double speed = 0.0;          ///< of the joint; of the body's centre of mass [m/s], 0 where the file gives it
+  double angular_speed = 0.0;  ///< of the body [rad/s], 0 likewise
 };
 
 /// Finds the velocities of an assembled mechanism, each of these as far as those before allow:

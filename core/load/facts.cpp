@@ -154,9 +154,9 @@ Json start_changes_json(const Model& model, const StartReport& report) {
   }
   for (const ChosenSpeed& one : report.chosen) {
     if (one.body >= 0) {
-      chosen.push_back({{"body", model.bodies[static_cast<std::size_t>(one.body)].name},
-                        {"speed", one.speed},
-                        {"angular_speed", one.angular_speed}});
+      Json& own = chosen.emplace_back(Json{{"body", model.bodies[static_cast<std::size_t>(one.body)].name}});
+      if (one.speed > 0.0) own["speed"] = one.speed;
+      if (one.angular_speed > 0.0) own["angular_speed"] = one.angular_speed;
       continue;
     }
     chosen.push_back({{"joint", model.joints[static_cast<std::size_t>(one.joint)].name}, {"speed", one.speed}});
