@@ -62,6 +62,8 @@ Component cylindrical() {
            "Nikravesh 1988, Computer-Aided Analysis of Mechanical Systems; Haug 1989, Computer Aided Kinematics "
            "and Dynamics of Mechanical Systems",
        .parameters = cylindrical_parameters,
+       .first_end = "sleeve",
+       .second_end = "shaft",
        .axis = MarkerAxis::z});
 }
 
