@@ -338,7 +338,7 @@ class FreeMotions {
     std::vector<char> found(model_.bodies.size(), 0);
     const auto moves = [&](BodyId body) { return body != ground && is_moving(body); };
     for (const Marker& frame : model_.frames) {
-      if (frame.name.ends_with("/origin") || frame.name.ends_with("/com") || is_used(frame)) continue;
+      if (is_used(frame) || !marks_a_joint(frame)) continue;
       const Eigen::Vector3d place = place_of(frame);
       for (const Marker& other : model_.frames) {
         if (frame.body == other.body || !(moves(frame.body) || moves(other.body)) || other.name.ends_with("/com"))
@@ -352,6 +352,14 @@ class FreeMotions {
     }
     spread(found);
     return found;
+  }
+
+  /// Frames that the file names do, and origins that it puts elsewhere than at the centre of mass.
+  bool marks_a_joint(const Marker& frame) const {
+    if (!frame.name.ends_with("/origin")) return !frame.name.ends_with("/com");
+    if (frame.body == ground) return false;
+    const Body& body = model_.bodies[at(frame.body)];
+    return (body.position || body.angle || body.rotation) && body.com != Vector3{};
   }
 
   bool is_used(const Marker& frame) const {

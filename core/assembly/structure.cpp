@@ -15,6 +15,7 @@
 #include "assembly/doubled_loads.h"
 #include "assembly/doubled_plays.h"
 #include "assembly/force_doubts.h"
+#include "assembly/idle_turns.h"
 #include "assembly/left_free.h"
 #include "assembly/play_bypass.h"
 #include "assembly/play_gap.h"
@@ -67,6 +68,7 @@ class Examination {
     judge_bypasses();
     judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
+    doubt_idle_turns(closed_, shut_, doubt_element);
     const MatrixXd open = constraint_matrix(released_.jacobian(), open_);
     judge_plays(open);
     find_undetermined(open);
@@ -257,8 +259,6 @@ class Examination {
       }
     }
   }
-
-  // --- joints between the same two bodies ------------------------------------------------------------------------
 
   /// Rows of a joint of the closed mechanism in the columns of two bodies.
   MatrixXd rows_of(int joint, const std::pair<BodyId, BodyId>& bodies) const {

@@ -14,6 +14,7 @@
 #include "run/equations.h"
 #include "run/idle_loads.h"
 #include "run/inner_motion.h"
+#include "run/missed_forces.h"
 #include "run/outcome.h"
 #include "run/path_edges.h"
 #include "run/sleeping_joints.h"
@@ -42,7 +43,7 @@ struct RunContext {
     archive(self.accepted, self.between, self.evaluations, self.e_accepted, self.e_trial);
     if (self.own_between) archive(*self.own_between);
     archive(self.solver, self.energy, self.events, self.kinks, self.idle_loads, self.sleeping, self.watch);
-    archive(self.ended_inside, self.ended_abruptly);
+    archive(self.ended_inside, self.ended_abruptly, self.missed);
     archive.list(self.first_forces);
     auto& counts = self.outcome;
     archive(counts.smallest_step, counts.largest_step, counts.steps, counts.rejected, counts.rows, counts.events);
@@ -72,6 +73,7 @@ struct RunContext {
   IdleLoads idle_loads;
   RunWatch watch;
   InnerMotion inner;  ///< of the step that was made last, where a row or a peak was sought inside
+  MissedForces missed;
   Outcome outcome;
   std::vector<std::string> warnings;
   std::vector<double> z_rate;  ///< room for z'

@@ -133,6 +133,7 @@ const Outcome& Simulation::Impl::finish() {
   corners.format_jumps();
   corners.format_unresolved();
   motion_loads.format();
+  context.missed.say(context);
   return outcome;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "base/index.h"
@@ -16,6 +17,17 @@ constexpr double nearest_aside = 1e-8;     // regularity of a step that is looke
 constexpr double as_far = 0.5;             // part of the regularity at its end: 0.7 of the distance
 constexpr int most_sweeps = 3;
 constexpr double most_growth = 2.0;  // of changes from sweep to sweep that matter: more is a stiff force
+
+/// Whether a force acts that begins and ends by events, or by a clearance.
+bool touches(const RunContext& run, const Evaluation& e) {
+  const std::span<const ForceBlock> blocks = run.system.forces().blocks();
+  for (std::size_t f = 0; f < blocks.size(); ++f) {
+    if (e.acts[f] == 0) continue;
+    const JointLayout& layout = run.system.joints().layout(blocks[f].joint);
+    if (layout.clearance > 0.0 || !layout.events.empty()) return true;
+  }
+  return false;
+}
 }  // namespace
 
 StepInside::StepInside(RunContext& run, RunFailure& failure, StepAttempt& attempt)
@@ -137,20 +149,46 @@ bool StepInside::settle_inside(double t) {
   return failure_.fail(4, failure_.why_unsolved(t));
 }
 
+// How far the interpolation is off the accelerations at the fraction s, in `between`. Contacts follow rules of their
+// own, and methods of a low order make short steps, between which what they damp shakes the accelerations.
+void StepInside::note_missed(double s) {
+  if (run_.integrator_layout.order < order_by_ends || touches(run_, run_.e_accepted) || touches(run_, run_.e_trial) ||
+      touches(run_, run_.e_between))
+    return;
+  DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
+      .missing(s, run_.between, {}, defect_, {});
+  if (run_.inner.known()) {
+    const InnerMotion::Weights weights(s);
+    for (std::size_t i = 0; i < defect_.size(); ++i) defect_[i] -= run_.inner.increment(weights.acceleration, i);
+  }
+  const double times = error_by_missing(s);
+  if (!(times > run_.missed.times)) return;
+  std::size_t most = 0;
+  const auto weight = [&](std::size_t i) {
+    return std::abs(defect_[i]) * (run_.system.coordinates().is_turn(static_cast<int>(i)) ? run_.system.size() : 1.0);
+  };
+  for (std::size_t i = 1; i < defect_.size(); ++i) most = weight(i) > weight(most) ? i : most;
+  const int body = static_cast<int>(most) / run_.system.layout().body_velocities();
+  run_.missed = {times, run_.between.t(), run_.trial.t() - run_.accepted.t(), body};
+}
+
 bool StepInside::look_inside(double t) {
+  const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
   if (run_.integrator_layout.order > order_by_ends) know_inside();
   if (!settle_inside(t)) return false;
-  if (!run_.inner.known()) {
-    const double s = (t - run_.accepted.t()) / (run_.trial.t() - run_.accepted.t());
+  bool astray = run_.inner.known();
+  if (!astray) {
     // How far the ends alone lead astray, their own accelerations say.
     DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
         .missing(s, run_.between, {}, defect_, {});
-    if (!(error_by_missing(s) <= astray_inside)) {
+    astray = !(error_by_missing(s) <= astray_inside);
+    if (astray) {
       know_inside();
       if (!settle_inside(t)) return false;
     }
   }
   if (!attempt_.evaluate_all(run_.between, run_.e_between)) return failure_.fail_with(run_.e_between->fault, t);
+  if (astray) note_missed(s);
   return true;
 }
 

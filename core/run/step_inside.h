@@ -25,6 +25,7 @@ class StepInside {
   double error_by_missing(double s);
   double change_of_memory(std::size_t place);
   bool settle_inside(double t);
+  void note_missed(double s);
 
   RunContext& run_;
   RunFailure& failure_;

@@ -1,4 +1,15 @@
 """Sound models; a mistake is put into each of them by plausibility_test."""
+import os
+
+from program import ROOT
+
+
+def shipped(*path):
+    with open(os.path.join(ROOT, "mechanisms", *path)) as file:
+        return file.read()
+
+
+SPATIAL, TOGGLE = shipped("spatial", "slider-crank.yaml"), shipped("gallery", "toggle-press.yaml")
 
 # A loose slider-crank, written in SI without units, with a spring and gravity.
 CRANK = """freeplay: 1

@@ -6,13 +6,14 @@ import unittest
 
 from doubtful_models import (
     BELT, BOB, BOX, CAM, CART, COUPLED, CRANK, ECCENTRIC, FOOT, GUIDED, HAMMER, HANGER, HOURS, PLATE, RACK, ROD, ROPE,
-    SATELLITE, SHAKER, STOP, TEETH, TRAIN, WATCH)
+    SATELLITE, SHAKER, SPATIAL, STOP, TEETH, TOGGLE, TRAIN, WATCH)
 from program import ROOT, ProgramTest
 
 DRIVEN = "kind: velocity, value: 100}}\ninitial: {joints: {main: 1}}"
 PIN = "  crankpin: {type: revolute, between: [crank/tip, coupler]}\n"
 GUIDE = "  guide: {type: prismatic, between: [ground, slider]}\n"
 INERTIA, MASS, LENGTH, VALUE, ANGLE = ["doubtful-" + word for word in ("inertia", "mass", "length", "value", "angle")]
+BEND = "  bend: {type: revolute, between: [upper/end, lower]}\n"
 
 # Model, text, what stands in its place, id of the warning, line of the new text where it stands, words of the message.
 PRESS = "  press: {type: force, at: box, value: [0, -100 N]}\n"
@@ -124,6 +125,8 @@ MISTAKES = [
     (CART, "drivers: {motor: {joint: rail, kind: position, value: 0.1*sin(3*t)}}\n", "", "doubtful-speed", "70", "mm/s",
      {"hinge: -1.2}": "hinge: -1.2}, speeds: {rail: 70}"}),
     (CRANK, "between: [ground, crank]", "between: [ground, crank/tip]", "same-frame", "crankpin", "'crank/tip'"),
+    (SPATIAL, "between: [ground/axle, crank]", "between: [ground/axle, crank/tip]", "same-frame", "ball", "'axle' and 'ball' hold 'crank'"),
+    (TOGGLE, BEND, "", "left-free", "lower", "no start is given for 'lower', 'ram'"),  # their poses are those of a closed loop
     (CRANK, "step: 1e-5", "accuracy: 1", VALUE, "1", "accuracy of 1 m says nothing of a mechanism of 0."),
     (ROD, "step: 1e-3", "accuracy: 200 mm", VALUE, "200 mm", "ask for a thousandth"),
     (CRANK, "step: 1e-5", "accuracy: 0.4 mm", VALUE, "wrist", "coarse against the clearance"),
