@@ -1,4 +1,4 @@
-// StageHistory: guesses the accelerations and multipliers of the stages to come from those of the steps before.
+// StageHistory: predictor of the accelerations and multipliers of the stages to come, from those of the steps before.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@ namespace freeplay {
 ///
 ///   x_n + c (x_n - x_n-1) + c (c + 1)/2 (x_n - 2 x_n-1 + x_n-2) + d
 ///
-/// with d what the same sum was off in the step before: the error falls with h^4 where the motion is smooth, so that
-/// one iteration does. Where such a guess would have been no better than a_n, as after an impact, and in steps of
-/// another length than those before, it is not used. Of a stage that is solved, a guess changes the cost alone.
+/// with d the error of the same sum in the step before: the error falls with h^4 where the motion is smooth, so that
+/// one iteration does. Where this predictor would have been no better than a_n, as after an impact, and in steps of
+/// another length than those before, it is not used. The result of a stage that is solved does not depend on it.
 ///
 /// While the predictor error stays well below the tolerance of the iteration, both stages of a step may be left as they
 /// were predicted, for as many steps as this error, growing by itself in each, stays small, and no more than
@@ -57,7 +57,7 @@ class StageHistory {
     memory[1] = dt;
   }
 
-  /// The guess for a stage, in `to`, which is left as it is where there is none. One copy of it in a step's code: a
+  /// The prediction of a stage, in `to`, which is left as it is where there is none. One copy of it in a step's code: a
   /// step of few bodies takes more time to fetch its instructions than to make them.
   [[gnu::noinline]] void guess(int stage, double c, StateView& to) {
     const Weights w = weights(c);
@@ -106,7 +106,8 @@ class StageHistory {
     return true;
   }
   bool leaves_first_alone() const { return pause_ > 0.0; }
-  /// Whether what a guess missed (StageSolver::guess_error, unsolved_error) exceeds what an iteration may leave.
+  /// Whether the error of a prediction (StageSolver::guess_error, unsolved_error) exceeds the tolerance of an
+  /// iteration.
   static bool is_surprise(double error) { return !(error <= 1.0); }
   /// Predicted accelerations of both stages: calls use(i, first, end) for every i.
   template <class Use>
@@ -123,7 +124,7 @@ class StageHistory {
       use(i, at_first, at_end);
     }
   }
-  /// What the accelerations at the end of such a step, in `to`, came out otherwise.
+  /// By how much the accelerations at the end of such a step, in `to`, differ from the predicted ones.
   void miss(const StateView& to, Span<double> missed) const {
     const Span<double> guess = of_stage(1, guess_);
     for (std::size_t i = 0; i < a_.size; ++i) missed[i] = to.a[i] + beside_[i] - guess[i];

@@ -65,7 +65,7 @@ struct RunContext {
   State accepted, trial, between;
   KeptEvaluation e_accepted, e_trial;
   std::optional<KeptEvaluation> own_between;  // with error control
-  KeptEvaluation& e_between;                  // else the solver's: between two of its calls it needs nothing of it
+  KeptEvaluation& e_between;                  // else the solver's, whose contents it does not need between its calls
   StepEvents events;
   SleepingJoints sleeping;
   DriveKinks kinks;  ///< of prescribed motions

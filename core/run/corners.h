@@ -20,7 +20,7 @@ class Corners {
  public:
   [[gnu::cold]] Corners(RunContext& run, RunFailure& failure, StepAttempt& attempt);
 
-  /// For tests of what finds wrong runs: steps go over what inputs do inside them.
+  /// A hook of tests: switches the search off, so that a test can make a wrong run.
   void go_blind() { inputs_.reset(); }
 
   /// The next corner that a step of the length dt, or a few times that, can end before.

@@ -26,9 +26,9 @@ EnergyGrowth::Energy EnergyGrowth::energy_of(const Evaluation& e) const {
   return out;
 }
 
-// Of all masses, moved ten times as fast as the fastest prescribing driver at either end of the step, and what
-// potential energies of weights and work of loads are rounded to: of a short step from rest, or from links in line with
-// what pushes them, nothing else is left. An accuracy leaves open speeds of as much a second.
+// Largest energy that a step may gain: the kinetic energy of all masses at ten times the speed of the fastest driver at
+// either end of the step, and the rounding of potential energies and of the work of loads, which is all that is left in
+// a short step from rest. An accuracy of L leaves speeds of L per second open.
 double EnergyGrowth::energy_of_drives() const {
   double squared = run_.settings.accuracy * run_.settings.accuracy, mass = 0.0,
          lifted = std::abs(run_.system.inertia().gravity_potential(run_.e_accepted->q));

@@ -8,9 +8,9 @@ namespace freeplay {
 
 /// Errors of steps on smooth motion have either sign; beside the corners of a load that comes again and again they have
 /// the same one, and an error of velocity grows into one of position until the run ends. So the errors of such steps
-/// are counted, as what they make of the position at the end of the run, and each may be a part of what is left: the
-/// sum stays below what was there at first, 16 steps' worth, and what each second adds. Numbers are in units of what a
-/// step on smooth motion may err by.
+/// are summed up as displacements at the end of the run, and each step may spend a part of the budget that is left: the
+/// errors of 16 steps at first, and a fixed amount more in each second. Numbers are in units of what a step on smooth
+/// motion may err by.
 ///
 /// The run goes on with the better of two results. Its error falls by a power of the step more than the estimate does,
 /// that is with the power (p + 1)/p of the estimate: what is spent is that, but for `rough` steps, beside infinite

@@ -1,4 +1,4 @@
-// IdleLoads: which loads move nothing, as the constraints and drivers alone say how what they act on moves.
+// IdleLoads: loads that move nothing, because constraints and drivers alone fix the motion of what they act on.
 #pragma once
 
 #include <vector>

@@ -138,7 +138,7 @@ void JointFormulas::find_box(Course& course) {
   course.has_box = (bend.high - bend.low) / 8.0 <= course.allowed;
 }
 
-// A joint that cannot be asked there has no say: the run finds out at its next state.
+// A joint that cannot be evaluated here is left out: the next regular evaluation reports its fault.
 void JointFormulas::ask(const AskedJoint& asked, const Point& here, const Evaluation& e) {
   const std::span<FormulaCalls::Watched> all(calls_);
   const FormulaCalls calls(all.subspan(asked.first, asked.end - asked.first));

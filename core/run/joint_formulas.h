@@ -19,7 +19,7 @@ class JointFormulas {
   [[gnu::cold]] explicit JointFormulas(RunContext& run);
 
   bool any() const { return !joints_.empty(); }
-  /// For tests of what finds wrong runs: nothing is looked at.
+  /// A hook of tests: switches the search off, so that a test can make a wrong run.
   void go_blind() { joints_.clear(), courses_.clear(); }
   /// The begin (0), the ends of quarters of the step, and its end, one after another, as they are evaluated (events).
   void follow(std::size_t place, const Point& here, const Evaluation& e);

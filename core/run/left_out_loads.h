@@ -1,4 +1,4 @@
-// LeftOutLoads: largest values before the window of the statistics, of steps that nothing else asks for a row of.
+// LeftOutLoads: largest values over the steps before the statistics window, for which no output row is made.
 #pragma once
 
 #include <span>

@@ -23,7 +23,7 @@ class MotionLoads {
   explicit MotionLoads(RunContext& run);
 
   bool any() const { return !loads_.empty() || joints_.any(); }
-  /// For tests of what finds wrong runs: nothing is looked at.
+  /// A hook of tests: switches the search off, so that a test can make a wrong run.
   void go_blind() { loads_.clear(), joints_.go_blind(); }
 
   /// A longer step is not to be tried, as the last one showed [s].

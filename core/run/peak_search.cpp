@@ -72,12 +72,12 @@ PeakSearch::Places PeakSearch::places() const {
   return known;
 }
 
-// What the parabola says at its top, and half as much as it bulges over a step more, since it may bulge otherwise.
+// The largest value of the parabola, and half of its rise above the chord of a step as a margin for its error.
 PeakSearch::Candidate PeakSearch::by_ends(std::size_t value, double largest) const {
   const double before = before_.values[value], start = start_.values[value], end = end_.values[value];
   const double higher = std::max(start, end), change = std::abs(end - start);
   if (ends_ < 3) {
-    // The first step of a new course: as much as it changes it may bulge.
+    // The first step of a new course: it may rise above its chord by as much as it changes.
     return change > 1e-3 * higher ? Candidate{0.5, part_of(higher + 0.5 * change - largest, largest)} : Candidate{};
   }
   const Parabola curve({(before_.x - start_.x) / (end_.x - start_.x), before}, {0.0, start}, {1.0, end});

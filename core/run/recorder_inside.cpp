@@ -9,8 +9,8 @@
 namespace freeplay {
 namespace {
 
-// Where positions that are off by roundings make forces that are off by their part of the fourth power of this [root of
-// the regularity], 1e-14, by much more.
+// Below this root of the regularity the rounding of positions, 1e-14, is amplified so much (by its fourth power) that
+// forces of joints say nothing.
 constexpr double noisy_forces = 2e-3;
 constexpr double nearest_doubted = 1e-8;   // regularity: nothing can be solved for nearer to it
 constexpr double farther = 1.5;            // of the distance from a singular position

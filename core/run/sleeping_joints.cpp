@@ -9,9 +9,9 @@
 namespace freeplay {
 namespace {
 
-constexpr double rounding_off = 1e-9;  // of the promised distance
-constexpr double no_cubic = 1e-3;      // of it, for ways that are cubics of the markers only nearly
-// Cubics that begin and end with so many steps to go, at the speeds there, stay within the distance between.
+constexpr double rounding_off = 1e-9;  // margin for rounding, as a part of the promised distance
+constexpr double no_cubic = 1e-3;      // margin for motion that is no cubic, as a part of it
+// A cubic whose remaining distance is at least so many steps long, at the speeds of its ends, stays within it.
 constexpr double steps_left = 2.0, steps_to_begin = 4.0;
 
 }  // namespace

@@ -67,7 +67,7 @@ bool StepAcceptance::begin() {
   DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
       .at(0.5, run_.between);
   std::ranges::copy(run_.trial.h(), run_.between.h().begin());  // as the attempt had it
-  // A state that no joint can be asked at is left out of the sum: the ends speak for it.
+  // Where the forces in the middle cannot be evaluated, those at the end of the step take their place.
   const bool seen = run_.system.evaluate(point(run_.between), term_force, run_.e_between);
   run_.energy.flow(seen ? run_.e_between : run_.e_trial, run_.between.lambda(), flow_half_way_);
   run_.energy.add(dt, flow_half_way_, run_.e_trial, run_.trial.lambda());

@@ -13,8 +13,8 @@ class StepInside {
 
   /// The state in `between` with its constraints, accelerations and multipliers.
   bool settle_between();
-  /// The same for a look that the run can do without: false, too, where what is seen there may be wrong, beside a
-  /// singular position. Of how near the step came to one it changes nothing.
+  /// The same for a state that the run can do without: false, too, near a singular position, where it may be wrong. The
+  /// recorded regularity stays as it was.
   bool settle_aside();
   /// A consistent state at t inside the step, in `between` and e_between, as good as the ends of the step are. False
   /// when the run is over.

@@ -105,7 +105,7 @@ bool StopSearch::seek_top(const Condition& condition, std::array<Place, 3> aroun
     const double top = 0.5 * (a.s + b.s - slope / bend);
     if (!(top > a.s && top < c.s)) return true;
     const double height = a.past + (top - a.s) * (slope + bend * (top - b.s));
-    // It may bulge as much again as the parabola does.
+    // It may rise above its chord by twice what the parabola does.
     if (!(height - bend * (c.s - a.s) * (c.s - a.s) > 0.0)) return true;
     if (std::abs(top - b.s) < same_top * (c.s - a.s) && !(height > 0.0)) return true;
     if (!look(top)) return false;

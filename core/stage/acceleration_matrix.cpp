@@ -193,6 +193,7 @@ double AccelerationMatrix::invert_blocks() {
   return smallest;
 }
 
+// Forwards and backwards in one function, as both halves share nearly all that they name.
 template <int width>
 void AccelerationMatrix::substitute(std::span<double> x, std::span<double> l) {
   using Square = Eigen::Matrix<double, width, width>;

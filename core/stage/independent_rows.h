@@ -56,8 +56,7 @@ class IndependentRows {
   /// The same in the present attempt alone: 1 where it had no pivot.
   double attempt_regularity() const { return regularity_; }
 
-  /// What both say, so that a look at another position can leave it as it was; `last`: at the position of the last
-  /// pivot.
+  /// Both regularities, so that an evaluation elsewhere can restore them; `last`: at the most recent factorization.
   struct Regularity {
     double attempt = 1.0, last = 1.0;
   };

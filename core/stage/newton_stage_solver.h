@@ -113,8 +113,8 @@ class NewtonStageSolver {
   /// are moved back by the rest (drift_).
   bool has_drifted(StageFactor& factor, bool on_phi) const;
   [[gnu::noinline]] void correct_drift(StageFactor& factor, StateView& out);
-  /// Whether the last update is what the rounding of Phi makes of itself: close to a singular position it grows without
-  /// bound, and nothing more can be gained.
+  /// Whether the last update is nothing but amplified rounding of Phi: near a singular position it grows without bound,
+  /// and further iterations do not reduce it.
   [[gnu::noinline]] bool is_rounding_of_phi(const Stage& stage, StageFactor& factor);
   /// The first redundant equation that does not hold by itself, or -1.
   int violated_redundant_row(const Stage& stage) const;

@@ -8,7 +8,7 @@
 namespace freeplay {
 
 /// `Solver` has the functions of StageSolver under the same names; those that may fail return false, and trouble()
-/// then says why. The table is valid while `solver` stays where it is.
+/// then says why. The table is valid while `solver` stays where it is. Long, as each entry of the table has a line.
 template <class Solver>
 abi::StageSolverTable stage_solver_table(Solver& solver) {
   static constexpr auto of = [](void* self) -> Solver& { return *static_cast<Solver*>(self); };

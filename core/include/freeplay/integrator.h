@@ -75,9 +75,10 @@ class StageSolver {
   double guess_error() const {
     return table_->guess_error != nullptr ? table_->guess_error(table_->self) : std::numeric_limits<double>::infinity();
   }
-  /// Of a stage with these betas that was left at its guess, where accelerate() has looked at it last: `missed` [m/s^2,
-  /// rad/s^2], nv numbers, is what its accelerations came out otherwise. In parts of newton_tolerance, which any stage
-  /// may leave. Infinite where positions are off the constraints by more than roundings, or the host gives none.
+  /// Error of a stage with these betas that was left as predicted and that accelerate() has evaluated last, in parts of
+  /// newton_tolerance, which any stage may leave. `missed` [m/s^2, rad/s^2], nv numbers: by how much its accelerations
+  /// differ from the predicted ones. Infinite where positions are off the constraints by more than roundings, or the
+  /// host gives none.
   double unsolved_error(double beta_q, double beta_v, Span<const double> missed) const {
     if (table_->unsolved_error == nullptr) return std::numeric_limits<double>::infinity();
     return table_->unsolved_error(table_->self, beta_q, beta_v, missed);

@@ -151,7 +151,7 @@ TEST(PlaySamplesLong, OfARedundantMechanismAreThoseThatClose) {
   }
 }
 
-TEST(PlaySamples, OfOneLooseJointOfARedundantLegStayWhereTheOthersHoldIt) {
+TEST(PlaySamples, StayWhereOtherJointsHoldALooseOne) {
   // A single loose joint, in a redundant leg: it must be where the others have it.
   std::string text = platforms::legs_text(platforms::sizes("4-rrr"), 1, {1e-4, 0.0, 0.0});
   for (const char* other : {"B1: 0.0001", "B2: 0.0001", "B3: 0.0001"}) {

@@ -132,7 +132,7 @@ TEST(ShortSteps, OfAJointAreBlamedOnIt) {
 }
 
 // 1e-12 s: more than 1e11, which no one waits for.
-TEST(ShortSteps, ThatDoNotComeToTheEndInADayEndTheRun) {
+TEST(ShortSteps, StopARunThatWouldTakeMoreThanADay) {
   const ModelRun run = run_sticky("1e-12", {});
   EXPECT_EQ(run.outcome().exit_code, 4);
   EXPECT_THAT(run.outcome().reason, ::testing::HasSubstr("the run does not come to its end: steps of 1e-12 s"));

@@ -74,7 +74,7 @@ TEST(Statistics, CountContactsAndTheirShareOfTime) {
 }
 
 // The force grows by the power 1.5 of the time in the only step that is made in contact.
-TEST(Statistics, OfARunThatEndsInItsFirstContactCountWhatGrowsInIt) {
+TEST(Statistics, CountTheContactInWhichARunEnds) {
   const auto rms = [](const std::string& accuracy) {
     const std::string text =
         "freeplay: 1\nbodies: {ball: {mass: 1, inertia: 1e-4}}\njoints: {ring: {type: revolute, between: [ground, "

@@ -155,7 +155,7 @@ TEST(StepControl, ErrorsAfterAnEventFallWithTheCubeOfTheStep) {
   EXPECT_NEAR(control.next(), 0.45, 1e-15);
 }
 
-TEST(StepControl, WhereLessErrorIsAllowedTheNextStepIsShorterByTheRootOfThat) {
+TEST(StepControl, ShortensTheStepByTheRootOfASmallerTolerance) {
   StepControl control({1.0, 1e-6, 10.0}, 5);
   control.accept(1.0, 1.0);
   control.allow(1.0 / 32.0);

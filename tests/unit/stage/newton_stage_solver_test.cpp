@@ -60,7 +60,7 @@ struct Swinging : ::testing::Test {
   State state, before;
 };
 
-TEST_F(Swinging, LastLookOfAStageWithoutRowsIsThatOfTheEnd) {
+TEST_F(Swinging, EvaluatesTheEndOfAStageWithoutRowsLast) {
   const StageResult result = trapezoid(1e-4);
   ASSERT_TRUE(result.converged);
   ASSERT_GT(result.iterations, 1);
