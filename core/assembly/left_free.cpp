@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/driver_reach.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "model/force_element.h"
@@ -31,6 +32,7 @@ class FreeMotions {
     if (found.motions <= 0) found.bodies.clear();
     if (!found.bodies.empty()) judge(rows, found);
     if (found.doubt.empty()) find_idle(spins, found);
+    if (found.doubt.empty()) find_apart(found);
     return found;
   }
 
@@ -68,6 +70,17 @@ class FreeMotions {
           model_.bodies[at(b)].name);
       return;
     }
+  }
+
+  /// Bodies left free that nothing ties to those which drivers move, as a pump whose gear was forgotten.
+  void find_apart(LeftFree& found) const {
+    const std::vector<char> reached = reached_by_drivers(model_);
+    const auto apart = std::ranges::find_if(found.bodies, [&](BodyId body) { return !reached[at(body)]; });
+    if (apart == found.bodies.end()) return;
+    found.doubtful = *apart;
+    found.doubt = fmt::format(
+        "no driver moves '{}': no joint, gear or force ties it to what drivers move; add what is missing, or a driver",
+        model_.bodies[at(*apart)].name);
   }
 
   /// Is one bearing on ground without play all that touches the body?
@@ -337,6 +350,8 @@ class FreeMotions {
   std::vector<char> may_miss_a_joint(const IsMoving& is_moving) const {
     std::vector<char> found(model_.bodies.size(), 0);
     const auto moves = [&](BodyId body) { return body != ground && is_moving(body); };
+    if (std::ranges::any_of(model_.frames, [&](const Marker& frame) { return is_left_over(frame); }))
+      std::ranges::fill(found, 1);
     for (const Marker& frame : model_.frames) {
       if (is_used(frame) || !marks_a_joint(frame)) continue;
       const Eigen::Vector3d place = place_of(frame);
@@ -362,14 +377,38 @@ class FreeMotions {
     return (body.position || body.angle || body.rotation) && body.com != Vector3{};
   }
 
+  /// A frame of the model file that nothing at all stands on.
+  bool is_left_over(const Marker& frame) const {
+    if (frame.name.ends_with("/origin") || frame.name.ends_with("/com")) return false;
+    if (frame.body != ground && model_.bodies[at(frame.body)].location.file != model_.file) return false;
+    return std::ranges::none_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+  }
+  /// By more than forces along or about an axis, as of friction: these act at joints, and hold nothing.
   bool is_used(const Marker& frame) const {
-    return std::ranges::any_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
+    for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
+      if (model_.markers[at(m)].name == frame.name && !serves_axes_alone(m)) return true;
+    }
+    return false;
+  }
+  bool serves_axes_alone(int marker) const {
+    bool any = false;
+    for (const JointElement& joint : model_.joints) {
+      if (joint.gear >= 0 || (joint.marker_a != marker && joint.marker_b != marker)) continue;
+      if (!acts_on_an_axis(joint)) return false;
+      any = true;
+    }
+    const auto at_marker = [&](const AppliedForce& force) { return force.marker == marker; };
+    return any && std::ranges::none_of(model_.forces, at_marker) &&
+           std::ranges::count(model_.settings.frames, marker) == 0;
+  }
+  static bool acts_on_an_axis(const JointElement& joint) {
+    return is_force_element(joint) && joint.ideal_layout().coordinate != Coordinate::none;
   }
 
   bool are_joined(BodyId one, BodyId other) const {
     return std::ranges::any_of(model_.joints, [&](const JointElement& joint) {
       const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
-      return joint.gear < 0 && ((a == one && b == other) || (a == other && b == one));
+      return joint.gear < 0 && !acts_on_an_axis(joint) && ((a == one && b == other) || (a == other && b == one));
     });
   }
 

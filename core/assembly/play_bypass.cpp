@@ -79,11 +79,15 @@ class Bypasses {
     return merged;
   }
 
-  /// Rows of a joint as of the twist of its part with `marker`, taken at `place`, while the other part stands still.
-  /// What misses the place by less than `near` is there: a journal may start beside the centre of its bearing.
+  /// Rows of a joint as of the twist of its part with `marker`, taken at `place`, while the other part stands still. Of
+  /// ground the other part turns back. What misses the place by less than `near` is there: a journal may start beside
+  /// the centre of its bearing.
   MatrixXd rows_of(int j, int marker, const Vector3d& place, double near) const {
     const Slice slice = closed_.layout().rows(j);
     const int width = closed_.layout().body_velocities();
+    const double sign = body_of(marker) == ground ? -1.0 : 1.0;
+    if (sign < 0.0)
+      marker = marker == model_.joints[at(j)].marker_a ? model_.joints[at(j)].marker_b : model_.joints[at(j)].marker_a;
     const Vector3d lever = Eigen::Map<const Vector3d>(shut_.markers[at(marker)].position) - place;
     MatrixXd rows = MatrixXd::Zero(slice.size, 6);
     for (auto [found, end] = blocks_.equal_range(slice.offset); found != end; ++found) {
@@ -95,7 +99,7 @@ class Bypasses {
         const Vector3d along = Eigen::Map<const Vector3d>(twist);
         Vector3d about = Eigen::Map<const Vector3d>(twist + 3) + lever.cross(along);
         about = (about.array().abs() > near * along.norm()).select(about, 0.0);
-        rows.row(r) << along.transpose(), about.transpose();
+        rows.row(r) << sign * along.transpose(), sign * about.transpose();
       }
     }
     return rows;

@@ -22,7 +22,14 @@ constexpr std::size_t most_drivers = 2000;  // that are looked at
 constexpr double table_beyond = 50.0;       // the end of a table, in runs
 constexpr double largest_turn = 0.5;        // in a fixed step [rad]
 
-/// Numbers that are written in the text, and those of its parameters that have no dimension.
+std::string_view word_after(std::string_view text, std::size_t i) {
+  const std::size_t begin = std::min(text.find_first_not_of(' ', i), text.size());
+  std::size_t end = begin;
+  while (end < text.size() && std::isalpha(static_cast<unsigned char>(text[end]))) ++end;
+  return text.substr(begin, end - begin);
+}
+
+/// Numbers that are written in the text without a unit, and those of its parameters that have no dimension.
 std::vector<double> numbers_in(const CheckedValue& written) {
   const std::string& text = written.node().text;
   std::vector<double> numbers;
@@ -31,8 +38,8 @@ std::vector<double> numbers_in(const CheckedValue& written) {
     if (digit(i) || (text[i] == '.' && digit(i + 1))) {
       double number = 0.0;
       const auto read = std::from_chars(text.data() + i, text.data() + text.size(), number);
-      numbers.push_back(number);
       i = std::max(static_cast<std::size_t>(read.ptr - text.data()), i + 1);
+      if (!is_unit_name(word_after(text, i))) numbers.push_back(number);
     } else if (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_') {
       while (i < text.size() && (std::isalnum(static_cast<unsigned char>(text[i])) || text[i] == '_')) ++i;
     } else {
@@ -209,7 +216,9 @@ class MotionDoubts {
     const bool angle = driver.kind == DriverKind::angle;
     const double speed = angle ? course.fastest : std::max(std::abs(course.low), std::abs(course.high));
     judge_step(speed, written);
-    if (names_a_unit(written)) return;
+    // Degrees of one term are not those of another, as in '-70 deg - 40*smooth(t, 1 s, 2 s)'.
+    const bool united = names_a_unit(written);
+    if (united && (!angle || written.node().text.find("rad") != std::string::npos)) return;
     const bool far = angle && settings_.start == 0.0 && std::abs(course.begin) > bare_limit::angle;
     if (far && doubt_angle(written, course.begin)) return;
     const double swing = angle ? amplitude(driver.value, written) : 0.0;
@@ -217,7 +226,7 @@ class MotionDoubts {
       written.warn("doubtful-angle", fmt::format("'{0}' swings or turns by {1:.6g} rad: write '{1:.6g} deg' if degrees "
                                                  "are meant, else '{1:.6g} rad'",
                                                  written.path(), swing));
-    } else {
+    } else if (!united) {
       if (!doubt_pins(driver, speed, written, fmt::format("{:.6g} rpm", speed))) doubt_angular_speed(written, speed);
     }
   }

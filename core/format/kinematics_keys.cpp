@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "format/doubtful_number.h"
 #include "format/pose_table.h"
 #include "model/path_pose.h"
 
@@ -14,6 +15,13 @@ std::optional<int> read_mode(const CheckedValue& value) {
   if (!mode || *mode != 0) return mode ? std::optional<int>(static_cast<int>(*mode)) : std::nullopt;
   value.fail("out-of-range", "'" + value.path() + "' must be 1 or -1, not 0");
   return std::nullopt;
+}
+
+/// `30` where 30 degrees are meant.
+void doubt_first_angle(const CheckedValue& written, const Expression& angle) {
+  Jet at_zero;
+  EvaluationFailure ignored;
+  if (angle.evaluate(0.0, at_zero, ignored)) doubt_angle(written, at_zero.value);
 }
 
 /// "'x', 'y' and 'angle'"
@@ -50,8 +58,10 @@ std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value, bool
   for (std::size_t i = 0; i < keys.size(); ++i) {
     const auto component = map.find(keys[i]);
     if (!component) continue;
-    path.functions[i] = component->time_function(i < (in_space ? 3U : 2U) ? dimension::length : dimension::angle);
+    const bool turns = i >= (in_space ? 3U : 2U);
+    path.functions[i] = component->time_function(turns ? dimension::angle : dimension::length);
     path.text[i] = component->node().text;
+    if (turns && path.functions[i]) doubt_first_angle(*component, *path.functions[i]);
     if (in_run && path.functions[i]) draft.timed.push_back({*component, path.functions[i]->time_parts(), false, false});
     good = good && path.functions[i].has_value();
   }

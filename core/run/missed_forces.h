@@ -8,8 +8,9 @@ struct RunContext;
 /// A row inside of a step has the accelerations of the forces that act there. The motion between the ends of the step
 /// has others where a force acts for less time than the step takes, as one that code of a plugin makes of the position.
 struct MissedForces {
-  /// As many times what a step may err by. Smooth motion stays below 1, what begins inside a step at some 30.
-  static constexpr double allowed = 100.0;
+  /// As many times what a step may err by. Smooth motion stays below 1, that of light bodies on stiff springs, whose
+  /// accelerations amplify what their positions are off by, below 1000.
+  static constexpr double allowed = 1e4;
 
   double times = 0.0;   ///< what the interpolation may be off by for that, in units of what a step may err by
   double at = 0.0;      ///< when [s]

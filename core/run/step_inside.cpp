@@ -150,11 +150,14 @@ bool StepInside::settle_inside(double t) {
 }
 
 // How far the interpolation is off the accelerations at the fraction s, in `between`. Contacts follow rules of their
-// own, and methods of a low order make short steps, between which what they damp shakes the accelerations.
+// own, and methods of a low order make short steps, between which what they damp shakes the accelerations. Forces that
+// last no longer than an output interval may be missed.
 void StepInside::note_missed(double s) {
-  if (run_.integrator_layout.order < order_by_ends || touches(run_, run_.e_accepted) || touches(run_, run_.e_trial) ||
-      touches(run_, run_.e_between))
+  const bool is_long = run_.trial.t() - run_.accepted.t() >= run_.settings.interval;
+  if (!is_long || run_.integrator_layout.order < order_by_ends || touches(run_, run_.e_accepted) ||
+      touches(run_, run_.e_trial) || touches(run_, run_.e_between)) {
     return;
+  }
   DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
       .missing(s, run_.between, {}, defect_, {});
   if (run_.inner.known()) {

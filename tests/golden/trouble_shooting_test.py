@@ -254,6 +254,9 @@ CASES = {
         (0, pendulum("initial:", "forces:\n  one: %s\ninitial:" % SPRING.replace(", stiffness: 10", "")), RUN),
     "'...' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; ... [left-free]":
         (0, driven("joints:", "  wheel: {mass: 1 kg, inertia: 0.1}\njoints:\n  axle: {type: revolute, between: [ground, wheel]}"), RUN),
+    "no driver moves '...': no joint, gear or force ties it to what drivers move; ... [left-free]":
+        (0, driven("joints:", "  load: {mass: 1 kg, inertia: 0.1, com: [0.1, 0]}\njoints:\n  eye: {type: revolute, between: [ground, load]}")
+         .replace("drivers:", "initial: {joints: {eye: 1 rad}}\ndrivers:"), RUN),
     "the play of joint '...' is bypassed by ... [play-bypassed]":
         (0, journal("simulation:", "  pin: {type: revolute, between: [ground, ball]}\nsimulation:"), RUN),
     "what force '...' lets touch starts ... m deep in each other, ... and is thrown apart: ... [starts-inside]":

@@ -1,0 +1,71 @@
+#include "assembly/driver_reach.h"
+
+#include <numeric>
+
+#include "base/index.h"
+
+namespace freeplay {
+namespace {
+
+class Groups {
+ public:
+  explicit Groups(const Model& model) : model_(model), root_(model.bodies.size()) {
+    std::iota(root_.begin(), root_.end(), 0);
+    for (std::size_t j = 0; j < model.joints.size(); ++j) {
+      const JointElement& joint = model.joints[j];
+      if (joint.gear < 0) tie(joint.marker_a, joint.marker_b);
+      tie_to_channels(joint.by_motion, joint.marker_a), tie_to_channels(joint.by_motion, joint.marker_b);
+    }
+    for (const Gear& gear : model.gears) {
+      const JointElement &first = model.joints[at(gear.first)], &second = model.joints[at(gear.second)];
+      for (const int a : {first.marker_a, first.marker_b}) tie(a, second.marker_a), tie(a, second.marker_b);
+    }
+    for (const AppliedForce& force : model.forces) tie_to_channels(force.by_motion, force.marker);
+    for (const Driver& driver : model.drivers) {
+      const JointElement& joint = model.joints[at(driver.joint)];
+      tie_to_channels(driver.by_motion, joint.marker_a), tie_to_channels(driver.by_motion, joint.marker_b);
+    }
+  }
+
+  BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+  int root(int body) {
+    while (root_[at(body)] != body) body = root_[at(body)] = root_[at(root_[at(body)])];
+    return body;
+  }
+
+ private:
+  void tie(int marker, int other) {
+    const BodyId a = body_of(marker), b = body_of(other);
+    if (a != ground && b != ground) root_[at(root(a))] = root(b);
+  }
+  void tie_to_channels(const MotionFormulas& formulas, int marker) {
+    for (const MotionChannel& channel : formulas.channels) {
+      if (!channel.is_of_joint()) {
+        tie(marker, channel.element);
+        continue;
+      }
+      const JointElement& joint = model_.joints[at(channel.element)];
+      tie(marker, joint.marker_a), tie(marker, joint.marker_b);
+    }
+  }
+
+  const Model& model_;
+  std::vector<int> root_;
+};
+
+}  // namespace
+
+std::vector<char> reached_by_drivers(const Model& model) {
+  Groups groups(model);
+  std::vector<char> roots(model.bodies.size(), 0), reached(roots.size());
+  for (const Driver& driver : model.drivers) {
+    const JointElement& joint = model.joints[at(driver.joint)];
+    for (const int marker : {joint.marker_a, joint.marker_b}) {
+      if (const BodyId body = groups.body_of(marker); body != ground) roots[at(groups.root(body))] = 1;
+    }
+  }
+  for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = roots[at(groups.root(static_cast<int>(b)))];
+  return reached;
+}
+
+}  // namespace freeplay
