@@ -65,22 +65,34 @@ class FreeMotions {
       found.doubtful = b;
       found.doubt = fmt::format(
           "'{}' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; "
-          "add "
-          "what is missing, or delete it",
+          "add what is missing, or delete it",
           model_.bodies[at(b)].name);
       return;
     }
   }
 
-  /// Bodies left free that nothing ties to those which drivers move, as a pump whose gear was forgotten.
+  /// Bodies left free where drivers turn rotors alone, to which nothing ties them, as a pump whose gear was forgotten.
   void find_apart(LeftFree& found) const {
     const std::vector<char> reached = reached_by_drivers(model_);
+    for (BodyId b = 0; b < static_cast<BodyId>(reached.size()); ++b) {
+      if (reached[at(b)] && !stands_on_ground_alone(b)) return;
+    }
     const auto apart = std::ranges::find_if(found.bodies, [&](BodyId body) { return !reached[at(body)]; });
     if (apart == found.bodies.end()) return;
     found.doubtful = *apart;
     found.doubt = fmt::format(
         "no driver moves '{}': no joint, gear or force ties it to what drivers move; add what is missing, or a driver",
         model_.bodies[at(*apart)].name);
+  }
+
+  /// Whether all joints and forces between bodies are to ground, and no other force acts on it.
+  bool stands_on_ground_alone(BodyId body) const {
+    const auto to_another = [&](const JointElement& joint) {
+      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+      return joint.gear < 0 && (a == body || b == body) && a != ground && b != ground;
+    };
+    const auto on_it = [&](const AppliedForce& force) { return body_of(force.marker) == body; };
+    return std::ranges::none_of(model_.joints, to_another) && std::ranges::none_of(model_.forces, on_it);
   }
 
   /// Is one bearing on ground without play all that touches the body?
@@ -350,7 +362,7 @@ class FreeMotions {
   std::vector<char> may_miss_a_joint(const IsMoving& is_moving) const {
     std::vector<char> found(model_.bodies.size(), 0);
     const auto moves = [&](BodyId body) { return body != ground && is_moving(body); };
-    if (std::ranges::any_of(model_.frames, [&](const Marker& frame) { return is_left_over(frame); }))
+    if (std::ranges::any_of(model_.frames, [&](const Marker& one) { return !moves(one.body) && is_left_over(one); }))
       std::ranges::fill(found, 1);
     for (const Marker& frame : model_.frames) {
       if (is_used(frame) || !marks_a_joint(frame)) continue;
