@@ -32,6 +32,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       left_out_(run.system, run.channels),
       statistics_(run.model, run.channels, run.adaptive),
       clearances_(run.model, run.system.joints(), run.channels),
+      slips_(run.system, run.channels),
       ledger_(run.system.joints(), run.channels),
       maxima_(run.system.joints(), run.channels),
       peaks_(run.adaptive ? statistics_.largest().places().size() : 0),
@@ -186,6 +187,7 @@ bool Recorder::write_row() {
   if (contact_rows_.active()) contact_rows_.give_before_row(run_.accepted.t(), giving());
   ++run_.outcome.rows;
   statistics_.note_written(row_);
+  slips_.add(row_, run_.e_accepted);
   for (Sink* sink : sinks_) sink->row(row_);
   return sinks_are_well();
 }
@@ -324,6 +326,7 @@ bool Recorder::write_row_at(double t) {
   const Profile::Timer timer(run_.evaluations.profile, Phase::output);
   if (!see_at(t, row_between_)) return false;
   run_.watch.add_inside(row_between_);
+  slips_.add(row_between_, run_.e_between);
   maxima_.see(row_between_);
   feed_.see_inside(row_between_);
   if (contact_rows_.active()) {

@@ -13,6 +13,7 @@
 #include "run/observer.h"
 #include "run/peak_search.h"
 #include "run/sink.h"
+#include "run/slip_watch.h"
 #include "run/statistics.h"
 #include "run/step_feed.h"
 #include "run/step_inside.h"
@@ -68,11 +69,12 @@ class Recorder {
 
   const Statistics& statistics() const { return statistics_; }
   const ClearanceStatistics& clearances() const { return clearances_; }
+  const SlipWatch& slips() const { return slips_; }
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
     archive(self.statistics_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_, self.row_,
-            self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_);
+            self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_, self.slips_);
   }
 
  private:
@@ -110,6 +112,7 @@ class Recorder {
   LeftOutLoads left_out_;
   Statistics statistics_;
   ClearanceStatistics clearances_;
+  SlipWatch slips_;
   ContactLedger ledger_;
   ImpactMaxima maxima_;
   PeakSearch peaks_;  // with error control

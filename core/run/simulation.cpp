@@ -134,6 +134,7 @@ const Outcome& Simulation::Impl::finish() {
   corners.format_unresolved();
   motion_loads.format();
   context.missed.say(context);
+  recorder.slips().say(context);
   return outcome;
 }
 
