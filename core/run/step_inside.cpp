@@ -18,6 +18,16 @@ constexpr double as_far = 0.5;             // part of the regularity at its end:
 constexpr int most_sweeps = 3;
 constexpr double most_growth = 2.0;  // of changes from sweep to sweep that matter: more is a stiff force
 
+/// Whether an acceleration in `between` is farther from those at both ends of the step than these are from each other.
+bool accelerates_beyond_ends(const RunContext& run) {
+  const std::span<const double> start = run.accepted.a(), end = run.trial.a(), here = run.between.a();
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const auto [low, high] = std::minmax(start[i], end[i]);
+    if (here[i] > 2.0 * high - low || here[i] < 2.0 * low - high) return true;
+  }
+  return false;
+}
+
 /// Whether a force acts that begins and ends by events, or by a clearance.
 bool touches(const RunContext& run, const Evaluation& e) {
   const std::span<const ForceBlock> blocks = run.system.forces().blocks();
@@ -154,8 +164,8 @@ bool StepInside::settle_inside(double t) {
 // last no longer than an output interval may be missed.
 void StepInside::note_missed(double s) {
   const bool is_long = run_.trial.t() - run_.accepted.t() >= run_.settings.interval;
-  if (!is_long || run_.integrator_layout.order < order_by_ends || touches(run_, run_.e_accepted) ||
-      touches(run_, run_.e_trial) || touches(run_, run_.e_between)) {
+  if (!is_long || !accelerates_beyond_ends(run_) || run_.integrator_layout.order < order_by_ends ||
+      touches(run_, run_.e_accepted) || touches(run_, run_.e_trial) || touches(run_, run_.e_between)) {
     return;
   }
   DenseStep(run_.model.space, run_.accepted, run_.e_accepted->internal_rate, run_.trial, run_.e_trial->internal_rate)
