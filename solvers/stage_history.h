@@ -57,8 +57,8 @@ class StageHistory {
     memory[1] = dt;
   }
 
-  /// The prediction of a stage, in `to`, which is left as it is where there is none. One copy of it in a step's code: a
-  /// step of few bodies takes more time to fetch its instructions than to make them.
+  /// Writes the predictor of a stage into `to`, or nothing where there is none. Not inlined: a step of few bodies takes
+  /// more time to fetch its instructions than to execute them.
   [[gnu::noinline]] void guess(int stage, double c, StateView& to) {
     const Weights w = weights(c);
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;

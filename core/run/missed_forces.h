@@ -8,7 +8,7 @@ struct RunContext;
 /// A row inside of a step has the accelerations of the forces that act there. The motion between the ends of the step
 /// has others where a force acts for less time than the step takes, as one that code of a plugin makes of the position.
 struct MissedForces {
-  /// As many times what a step may err by. Smooth motion stays below 1, that of light bodies on stiff springs, whose
+  /// As many times what a step may err by. Smooth motion stays below 2, that of light bodies on stiff springs, whose
   /// accelerations amplify what their positions are off by, below 1000.
   static constexpr double allowed = 1e4;
 

@@ -13,17 +13,6 @@ joints:
   spin: {type: revolute, between: [arm/tip, rotor]}
 %s""" + RUN
 
-BALL = """freeplay: 1
-bodies:
-  ball: {mass: 1, inertia: 0.1, velocity: {linear: [0.3, -0.1]}}
-joints:
-  ring:
-    type: revolute
-    between: [ground, ball]
-    clearance: {bearing_radius: 10 mm, radial_clearance: 1 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: hertz}%s}
-simulation: {end: 1 ms, step: 10 us}
-"""
-
 TILTED = """freeplay: 1
 space: spatial
 bodies:
