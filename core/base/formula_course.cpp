@@ -78,12 +78,14 @@ double FormulaCourse::rate_within(double from, double to) const {
 
 double FormulaCourse::length_of_form(double t, int degree) const {
   const auto after = std::ranges::upper_bound(corners_, t, {}, &Corner::time);
-  if (after == corners_.begin() || after == corners_.end()) return unknown;
+  if (after == corners_.end() && known_to_ < to_) return unknown;
+  const double begin = after == corners_.begin() ? from_ : std::prev(after)->time;
+  const double end = after == corners_.end() ? to_ : after->time;
   double length = unknown;
   for (const Piece& piece : pieces_) {
     const bool there = piece.from <= t && t < piece.to;
     const bool bends = std::isfinite(piece.rate) && (piece.rate > 0.0 || piece.degree > degree);
-    if (there && bends) length = after->time - std::prev(after)->time;
+    if (there && bends) length = end - begin;
   }
   return length;
 }

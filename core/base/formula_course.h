@@ -37,8 +37,8 @@ class FormulaCourse {
   /// How fast it may change anywhere in [from, to] [1/s]: see Outline::rates. Infinite where it is unknown, or was not
   /// asked for.
   double rate_within(double from, double to) const;
-  /// The time from the corner before t to that after it, where the formula is no polynomial of `degree` there; infinite
-  /// where it is one, where one of both corners is not known, or the rate is not.
+  /// The time between the corners (or the ends of the run) around t, where the formula is no polynomial of `degree`
+  /// between them; infinite where it is one, or where the next corner or the rate is not known.
   double length_of_form(double t, int degree) const;
   /// The time between the corners (or the ends of the run) around t, where the formula is no polynomial of `degree`
   /// between them; infinite where it is one, or where they are farther than `longest` apart or not known. Looks as far

@@ -75,7 +75,7 @@ CONTACT = ("platform_x", "platform_y")
 def four_bar(n):
     return Problem("four-bar-%d" % n, "validation/a02-chain", 1.0, ("frame.column1.link/top.x", "frame.column1.link/top.y"),
                    1e-4, (2e-2, 1e-2, 5e-3, 2e-3, 1e-3), (1e-2, 1e-3, 1e-4), ("windows=%d" % n,), best=1e-9,
-                   between=(1e-1, 5e-2, 3e-2, 2e-2, 5e-3, 1.5e-3),
+                   between=(1e-1, 5e-2, 4e-2, 3e-2, 2e-2, 5e-3, 1.5e-3),
                    trajectory="p2_fourbar_n%d.csv" % n, columns=("B0_x", "B0_y"), hand="p2", hand_options=("--n", str(n)))
 
 

@@ -1,4 +1,5 @@
 // Runs with error control go over no load, however short it is and however it is written.
+#include <array>
 #include <random>
 
 #include <fmt/format.h>
@@ -357,6 +358,20 @@ TEST(InputActivity, WhatADriveAloneMovesIsResolved) {
   const double moved = 0.5 * std::pow(0.05 * first + 0.01 * second, 2);
   EXPECT_NEAR(run.statistics().driver(0).max_abs, largest, 1e-3 * largest);
   EXPECT_NEAR(run.statistics().driver(0).work, 0.0, 1e-3 * moved);
+}
+
+// A motion of one form is crossed in parts also where the run begins or ends with it; 10/sqrt(3) is the largest second
+// derivative of a ramp of one second.
+TEST(InputActivity, AMotionThatTheRunBeginsOrEndsWithIsResolved) {
+  for (const auto& [from, to, end] :
+       {std::array{0.0, 1.0, 20.0}, {0.0, 1.0, 2000.0}, {19.0, 20.0, 20.0}, {0.0, 1.0, 1.0}}) {
+    const std::string value = fmt::format("0.1*smooth(t, {}, {})", from, to);
+    const ModelRun run(
+        mass("drivers: {motor: {joint: guide, kind: position, value: '" + value + "'}}", 1e-6, end, end / 10.0));
+    ASSERT_EQ(run.outcome().status, RunStatus::completed) << value;
+    EXPECT_NEAR(run.statistics().driver(0).max_abs, 1.0 / std::sqrt(3.0), 2e-3) << value;
+    EXPECT_NEAR(run.last("energy.residual"), 0.0, 1e-3 * 0.5 * 0.1875 * 0.1875) << value;
+  }
 }
 
 TEST(InputActivity, AJumpOfAnAngleIsPassed) {

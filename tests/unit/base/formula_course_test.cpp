@@ -201,6 +201,21 @@ TEST(FormulaCourse, InfiniteSlopesAreKnownOnTheirSideOfACorner) {
   EXPECT_NEAR(singular("sqrt(t)", 0.5).before, 0.5, 1e-12);
 }
 
+TEST(FormulaCourse, AFormThatTheRunBeginsOrEndsWithIsAsLongAsItIsThere) {
+  const auto length = [](const char* text, double t) {
+    const Expression expression = expression_of(text);
+    FormulaCourse course(expression, 0.0, 4.0);
+    course.next_corner(0.0, 4.0);
+    return course.length_of_form(t, 2);
+  };
+  EXPECT_NEAR(length("smooth(t, 0, 1)", 0.5), 1.0, 1e-9);
+  EXPECT_NEAR(length("smooth(t, 1, 2)", 1.5), 1.0, 1e-9);
+  EXPECT_NEAR(length("smooth(t, 3, 5)", 3.5), 1.0, 1e-9);
+  EXPECT_NEAR(length("t^3", 2.0), 4.0, 1e-9);
+  EXPECT_TRUE(std::isinf(length("t^2", 2.0)));
+  EXPECT_TRUE(std::isinf(length("smooth(t, 0, 1)", 2.0)));
+}
+
 // Its middle is the very place where smooth() is touched, and shows nothing of it.
 TEST(FormulaCourse, ALoadThatTouchesTheBeginOfARampInItsMiddleChanges) {
   const Expression expression = expression_of("1 - smooth(((t - 2)/0.5)^2, 0, 1)");
