@@ -57,7 +57,7 @@ class Bathe final : public Integrator {
     const bool unsolved = n.z.empty() && !solver.estimates() && history.leaves_unsolved();
     const bool first_alone = unsolved && history.leaves_first_alone();
     if (unsolved && !first_alone) {
-      follow_guesses(dt, n, to, solver, history);
+      follow_predictors(dt, n, to, solver, history);
       end_step(to, z_rate, solver);
       history.miss(to, n.increment_known);
       if (history.stands(solver.unsolved_error(q2_ * dt * q2_ * dt, q2_ * dt, n.increment_known))) {
@@ -119,7 +119,7 @@ class Bathe final : public Integrator {
   }
 
   /// Positions and velocities at the end of a step with the accelerations of both stages as they are guessed.
-  void follow_guesses(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history) const {
+  void follow_predictors(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history) const {
     const double q0 = q0_, q1 = q1_, b = q2_ * dt, b_first = 0.5 * split_ * dt;
     *to.t = n.t + dt;
     history.predict_both(split_, 1.0, [&](std::size_t i, double a_first, double a_end) {
@@ -134,7 +134,7 @@ class Bathe final : public Integrator {
   /// Both, or the second after the first as it is predicted.
   bool solve_stages(double dt, Start& n, StateView& to, StageSolver& solver, StageHistory& history,
                     bool second_alone) const {
-    history.guess(0, split_, to);
+    history.predict(0, split_, to);
     prepare_trapezoid(dt, n, to);
     if (second_alone) {
       for (std::size_t i = 0; i < n.v.size; ++i) to.v[i] = n.v_known[i] + 0.5 * split_ * dt * to.a[i];
@@ -143,7 +143,7 @@ class Bathe final : public Integrator {
       history.solved(0, to, solver.guess_error());
     }
     prepare_end(dt, n, to);
-    history.guess(1, 1.0, to);
+    history.predict(1, 1.0, to);
     return solve(n.t + dt, q2_ * dt, n, to, solver);
   }
 

@@ -48,7 +48,7 @@ class StageHistory {
     int place = static_cast<int>(last_);
     for (int i = 0; i < 3; ++i, place = place == 2 ? 0 : place + 1) past_[place] = take(count());
     off_ = take(static_cast<std::size_t>(stages) * count());
-    guess_ = take(static_cast<std::size_t>(stages) * count());
+    predicted_ = take(static_cast<std::size_t>(stages) * count());
     beside_ = take(a.size);
     if (!(std::abs(dt - memory[1]) <= 1e-6 * dt)) {
       steps_ = unsolved_ = 0.0;
@@ -59,34 +59,34 @@ class StageHistory {
 
   /// Writes the predictor of a stage into `to`, or nothing where there is none. Not inlined: a step of few bodies takes
   /// more time to fetch its instructions than to execute them.
-  [[gnu::noinline]] void guess(int stage, double c, StateView& to) {
+  [[gnu::noinline]] void predict(int stage, double c, StateView& to) {
     const Weights w = weights(c);
     const bool good = good_[static_cast<std::size_t>(stage)] > 0.0;
     const auto extrapolate = [&](Span<const double> now, std::size_t first, Span<double> out) {
       const Span<double> previous = past_[0].part(first, now.size), older = past_[1].part(first, now.size),
                          oldest = past_[2].part(first, now.size), off = of_stage(stage, off_).part(first, now.size),
-                         guess = of_stage(stage, guess_).part(first, now.size);
+                         predicted = of_stage(stage, predicted_).part(first, now.size);
       for (std::size_t i = 0; i < now.size; ++i) {
-        guess[i] = w.now * now[i] + w.previous * previous[i] + w.older * older[i] - w.oldest * oldest[i] + off[i];
-        if (good) out[i] = guess[i];
+        predicted[i] = w.now * now[i] + w.previous * previous[i] + w.older * older[i] - w.oldest * oldest[i] + off[i];
+        if (good) out[i] = predicted[i];
       }
     };
     extrapolate(a_, 0, to.a);
     extrapolate(lambda_, a_.size, to.lambda);
   }
-  /// What it came out as, `error` (StageSolver::guess_error) off the guess; the last one is that at the end of the
+  /// What it came out as, `error` (StageSolver::guess_error) off the predictor; the last one is that at the end of the
   /// step.
   [[gnu::noinline]] void solved(int stage, const StateView& to, double error) {
-    const Span<double> off = of_stage(stage, off_), guess = of_stage(stage, guess_);
+    const Span<double> off = of_stage(stage, off_), predicted = of_stage(stage, predicted_);
     double missed = 0.0, moved = 0.0;
     for (std::size_t i = 0; i < a_.size; ++i) {
-      const double miss = to.a[i] - guess[i];
+      const double miss = to.a[i] - predicted[i];
       missed = std::max(missed, std::abs(miss));
       moved = std::max(moved, std::abs(to.a[i] - a_[i]));
       off[i] += miss;
       beside_[i] = to.a[i];
     }
-    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - guess[a_.size + r];
+    for (std::size_t r = 0; r < lambda_.size; ++r) off[a_.size + r] += to.lambda[r] - predicted[a_.size + r];
     const bool good = steps_ > 1.0 && (!is_surprise(error) || missed <= 0.5 * moved);
     good_[static_cast<std::size_t>(stage)] = good ? 1.0 : 0.0;
     const double steps = good ? steps_of(error) : 0.0;
@@ -115,19 +115,19 @@ class StageHistory {
     const Weights first = weights(c_first), end = weights(c_end);
     const Span<const double> now = a_;
     const Span<double> previous = past_[0], older = past_[1], oldest = past_[2], off_first = of_stage(0, off_),
-                       off_end = of_stage(1, off_), guess = of_stage(1, guess_);
+                       off_end = of_stage(1, off_), predicted = of_stage(1, predicted_);
     for (std::size_t i = 0; i < now.size; ++i) {
       const double x = now[i], x1 = previous[i], x2 = older[i], x3 = oldest[i];
       const double at_first = first.now * x + first.previous * x1 + first.older * x2 - first.oldest * x3 + off_first[i],
                    at_end = end.now * x + end.previous * x1 + end.older * x2 - end.oldest * x3 + off_end[i];
-      guess[i] = at_end;
+      predicted[i] = at_end;
       use(i, at_first, at_end);
     }
   }
   /// By how much the accelerations at the end of such a step, in `to`, differ from the predicted ones.
   void miss(const StateView& to, Span<double> missed) const {
-    const Span<double> guess = of_stage(1, guess_);
-    for (std::size_t i = 0; i < a_.size; ++i) missed[i] = to.a[i] + beside_[i] - guess[i];
+    const Span<double> predicted = of_stage(1, predicted_);
+    for (std::size_t i = 0; i < a_.size; ++i) missed[i] = to.a[i] + beside_[i] - predicted[i];
   }
   /// Whether it stands, with such an error (StageSolver::unsolved_error). If so, it is over.
   bool stands(double error) {
@@ -145,9 +145,14 @@ class StageHistory {
 
  private:
   static constexpr int scalars = 6;
-  static constexpr double small_part = 0.5;  // of what a stage may leave
+  /// Of the tolerance of the iteration, up to which the error of stages left as predicted may grow: the other half is
+  /// for that of the end of the step, which judges them.
+  static constexpr double small_part = 0.5;
+  /// Most steps before the next try, of a pause that each try that fails doubles: of a thousand steps one is made twice
+  /// where no try ever stands.
   static constexpr double longest_pause = 1023.0;
-  static constexpr double worth = 0.25;  // of a step that stands, in tries that fail
+  /// Steps that one which stands takes off the next pause: four pay for one that was made twice.
+  static constexpr double worth = 0.25;
 
   struct Weights {
     double now, previous, older, oldest;
@@ -180,7 +185,7 @@ class StageHistory {
   double& last_;                 // how far the places of past_ have turned
   double &pause_, &next_pause_;  // steps until both stages may be left, and after the next surprise
   Span<double> past_[3];         // (a, lambda) at the starts of the steps before, the last one first
-  Span<double> good_, off_, guess_;
+  Span<double> good_, off_, predicted_;
   Span<double> beside_;  // a of the last stage less that at the end of the step, where it was solved last
 };
 
