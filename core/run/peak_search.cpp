@@ -34,7 +34,8 @@ struct Parabola {
 double part_of(double gain, double largest) { return gain / std::max(std::abs(largest), 1e-300); }
 }  // namespace
 
-PeakSearch::PeakSearch(std::size_t values) : credit_(first_credit), fair_credit_(first_credit) {
+PeakSearch::PeakSearch(std::size_t values, bool all_is_prescribed)
+    : credit_(first_credit), fair_credit_(first_credit), all_is_prescribed_(all_is_prescribed) {
   for (Point* point : {&before_, &start_, &end_}) point->values.resize(values);
   for (Point& point : inner_) point.values.resize(values);
 }
@@ -126,6 +127,10 @@ PeakSearch::Candidate PeakSearch::by_steepness(std::size_t value, double largest
 double PeakSearch::next(std::span<const double> largest) {
   if (ends_ < 2) return 0.0;
   const bool looked = looks_ + extras_ > 0;
+  if (all_is_prescribed_ && !looked) {
+    ++looks_;
+    return 0.5;
+  }
   const Places known = looked ? places() : Places{};
   Candidate best, likely;
   for (std::size_t i = 0; i < largest.size(); ++i) {
@@ -134,8 +139,9 @@ double PeakSearch::next(std::span<const double> largest) {
     if (one.gain > best.gain && (one.likely > 0.0 || one.gain > fair_gain)) best = one;
     if (one.likely > likely.likely) likely = one;
   }
-  const bool usual = extras_ == 0 && looks_ < most_looks && best.gain > least_gain;
-  if (usual && (credit_ >= 1.0 || best.gain >= large_gain)) {
+  const int allowed = all_is_prescribed_ ? 1 + most_looks : most_looks;
+  const bool usual = extras_ == 0 && looks_ < allowed && best.gain > least_gain;
+  if (usual && (all_is_prescribed_ || credit_ >= 1.0 || best.gain >= large_gain)) {
     credit_ = std::max(credit_ - 1.0, 0.0);
     ++looks_;
     return best.s;

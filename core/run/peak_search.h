@@ -12,10 +12,12 @@ namespace freeplay {
 /// where and how much. Looks cost about as much as a stage of an integrator: a step gets three at most, and all
 /// together one in twenty-four steps and eight more, beyond which only gains of more than a hundredth are pursued;
 /// where the parabola expects nothing, there must be room for a thousandth. As many again are kept for what is then
-/// left of a thousandth or more, of values that are largest at another place or that rise steeply.
+/// left of a thousandth or more, of values that are largest at another place or that rise steeply. Where all motion is
+/// prescribed no error of an integrator keeps steps short: there looks are not counted, and the middle of every step
+/// is one.
 class PeakSearch {
  public:
-  explicit PeakSearch(std::size_t values);
+  explicit PeakSearch(std::size_t values, bool all_is_prescribed = false);
 
   /// After an event or a kink values may go on otherwise.
   void restart(double t, std::span<const double> values);
@@ -33,7 +35,7 @@ class PeakSearch {
   }
 
  private:
-  static constexpr int most_looks = 3, most_extras = 3;  // at one step
+  static constexpr int most_looks = 3, most_extras = 3;  // at one step, besides its middle
   struct Point {
     double x = 0.0;  ///< time [s], of looks the fraction of the step
     std::vector<double> values;
@@ -49,8 +51,8 @@ class PeakSearch {
   /// What is known of the present step, in order: its start, looks and its end.
   struct Places {
     int count = 0;
-    std::array<double, most_looks + most_extras + 2> x;
-    std::array<const double*, most_looks + most_extras + 2> values;
+    std::array<double, most_looks + most_extras + 3> x;
+    std::array<const double*, most_looks + most_extras + 3> values;
   };
   Places places() const;
   bool could_exceed(std::size_t value, double largest) const;
@@ -60,10 +62,11 @@ class PeakSearch {
   double next_extra(Candidate best, std::span<const double> largest);
 
   Point before_, start_, end_;
-  std::array<Point, most_looks + most_extras> inner_;  ///< looks at the present step
-  int ends_ = 0;                                       ///< known in a row, at most 3
-  int looks_ = 0, extras_ = 0;                         ///< at the present step
+  std::array<Point, most_looks + most_extras + 1> inner_;  ///< looks at the present step
+  int ends_ = 0;                                           ///< known in a row, at most 3
+  int looks_ = 0, extras_ = 0;                             ///< at the present step
   double credit_, fair_credit_;
+  bool all_is_prescribed_;
 };
 
 }  // namespace freeplay

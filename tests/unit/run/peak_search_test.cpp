@@ -15,8 +15,8 @@ struct Walk {
   long looks = 0;
 };
 template <class F, class Step>
-Walk walk_by(const F& f, const Step& step_at, double end) {
-  PeakSearch search(1);
+Walk walk_by(const F& f, const Step& step_at, double end, bool all_is_prescribed = false) {
+  PeakSearch search(1, all_is_prescribed);
   Walk walk;
   std::vector<double> value(1), largest(1, -1.0);
   const auto see = [&](double t) {
@@ -71,6 +71,19 @@ TEST(PeakSearch, FindsTheLargestOfManyPeaks) {
   double exact = 0.0;
   for (double t = 0.0; t < 20.0; t += 1e-5) exact = std::max(exact, beat(t));
   EXPECT_NEAR(walk(beat, 0.043, 20.0).largest, exact, 1e-4 * exact);
+}
+
+// Bumps each a little higher than the one before, in steps of half their width.
+TEST(PeakSearch, FindsTheLastOfManySmallGainsWhereAllMotionIsPrescribed) {
+  const auto bumps = [](double t) {
+    const double middle = std::floor(t) + 0.5;
+    return (1.0 + 0.004 * middle) * std::exp(-std::pow((t - middle) / 0.2, 2));
+  };
+  for (const double step : {0.0932, 0.1071, 0.1234}) {
+    SCOPED_TRACE(step);
+    const auto steps = [step](double) { return step; };
+    EXPECT_NEAR(walk_by(bumps, steps, 60.0, true).largest, 1.0 + 0.004 * 59.5, 1e-3);
+  }
 }
 
 TEST(PeakSearch, LooksAtFewSteps) {
