@@ -14,6 +14,9 @@ namespace {
 
 using Eigen::VectorXd;
 
+constexpr double largest_turn =
+    3.0;  // of a body in one step [rad]: where a row hardly turns it, Newton asks for any number
+
 }  // namespace
 
 void throw_fault(const Model& model, const Fault& fault) {
@@ -156,6 +159,9 @@ ClosedMechanism::Rows ClosedMechanism::converge() {
     const VectorXd step = least_norm_solution(now.matrix, -now.residual);
     const std::vector<double> q(state.q().begin(), state.q().end());
     double length = 1.0, after = before;
+    for (int i = 0; i < static_cast<int>(step.size()); ++i) {
+      if (system.coordinates().is_turn(i)) length = std::min(length, largest_turn / std::abs(step[i]));
+    }
     for (int halving = 0; halving < 12; ++halving, length *= 0.5) {
       const VectorXd increment = length * step;
       system.coordinates().retract(q, {increment.data(), at(static_cast<int>(increment.size()))}, state.q());

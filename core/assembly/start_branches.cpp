@@ -36,6 +36,14 @@ VectorXd scaled(const System& system, VectorXd increment) {
   return increment;
 }
 
+// Of a step: turns count whole, however many.
+double length_of(const System& system, const VectorXd& step) {
+  double longest = 0.0;
+  for (int i = 0; i < static_cast<int>(step.size()); ++i)
+    longest = std::max(longest, std::abs(step[i]) / (system.coordinates().is_turn(i) ? 1.0 : system.size()));
+  return longest;
+}
+
 }  // namespace
 
 StartBranches::StartBranches(ClosedMechanism& mechanism, std::span<const double> guess)
@@ -91,7 +99,7 @@ void StartBranches::come_nearer() {
     if (step.lpNorm<Eigen::Infinity>() <= 1e-9) return;
     const std::vector<double> before(q.begin(), q.end());
     bool better = false;
-    double length = std::min(1.0, longest_turn / scaled(system_, step).lpNorm<Eigen::Infinity>());
+    double length = std::min(1.0, longest_turn / length_of(system_, step));
     for (int halving = 0; halving < 8 && !better; ++halving, length *= 0.5) {
       const VectorXd increment = length * step;
       system_.coordinates().retract(before, {increment.data(), at(static_cast<int>(increment.size()))}, q);
@@ -141,7 +149,7 @@ void StartBranches::refine() {
     const VectorXd bends = modes.values.cwiseAbs().cwiseMax(1e-9 * modes.values.cwiseAbs().maxCoeff());
     const VectorXd along = modes.vectors.transpose() * down;
     VectorXd step = -(ways * (modes.vectors * along.cwiseQuotient(bends)));
-    const double longest = scaled(system_, step).lpNorm<Eigen::Infinity>();
+    const double longest = length_of(system_, step);
     if (!(longest > 1e-12)) return;
     step *= std::min(1.0, longest_turn / longest);
     bool better = false;

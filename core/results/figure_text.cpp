@@ -47,7 +47,7 @@ std::string count_text(long count, double noise) {
 }
 
 std::string share_text(double part, double noise) {
-  if (noise < shown_of_share) return fmt::format("{:.1f} %", 100.0 * part);
+  if (noise < shown_of_share) return fmt::format("{:.1f} %", 100.0 * std::max(part, 0.0));
   return with_noise(100.0 * part, 100.0 * noise) + " %";
 }
 

@@ -37,6 +37,13 @@ class CamStart(ProgramTest):
                     self.assertEqual([], messages)
                     self.assertLess(abs(math.remainder(angle - top, 2 * math.pi)), 3e-3)
 
+    def test_the_start_is_within_a_turn_where_the_curve_has_no_slope(self):
+        """There a small way of the follower asks for any number of turns of the cam: 1e13 rad leave an angle without digits."""
+        for place in ("40 mm", "40.0001 mm", "41 mm", "48 mm"):
+            for more in ("", LIFT_OFF):
+                with self.subTest((place, more)):
+                    self.assertLess(abs(self.start(place, "40 mm + 8 mm*(1 - cos(2*x))/2", more)[0]), 2 * math.pi)
+
     def test_a_dwell_is_one_start(self):
         angle, messages = self.start("40 mm", DWELL)
         self.assertEqual([], messages)
