@@ -69,6 +69,7 @@ class PointOnLineClearance final : public PlanarContacts<PinInSlot> {
     layout.lowest = geometry().first;
     layout.highest = geometry().last;
     layout.play_shape = PlayShape::walls;
+    if (geometry().radius > 0.0) layout.smaller_radius = geometry().radius;
     layout.events = slot_events;
     layout.event_roles = begin_and_end;
     layout.channels = slot_channels;

@@ -86,8 +86,12 @@ struct Spring {
         return "The stiffness is negative here: the spring drives away from where it is slack.";
       if (in.functions[1] < below_zero) return "The damping is negative here: it drives the motion.";
     }
-    if (kind != linear || !(stiffness > 0.0) || !(length < most_pressed * free)) return nullptr;
-    return "The spring is pressed together to less than a twentieth of its free length, as none can be; beyond that it "
+    if (kind != linear || !(stiffness > 0.0) || !(free > 0.0)) return nullptr;
+    if (length > most_pulled * free)
+      return "The spring is pulled to more than ten times its free length: check its stiffness, what pulls, and their "
+             "units.";
+    if (!(length < most_pressed * free)) return nullptr;
+    return "The spring is pressed together to less than a tenth of its free length, as none can be; beyond that it "
            "changes sides.";
   }
   /// Where a formula changes its form.
@@ -111,7 +115,8 @@ struct Spring {
     }
   }
 
-  static constexpr double most_pressed = 0.05;  ///< coils lie on each other at a third or more
+  static constexpr double most_pressed = 0.1;  ///< coils lie on each other at a third or more
+  static constexpr double most_pulled = 10.0;  ///< soft ones of steel come to three or four times
 
   Kind kind;
   double stiffness, damping, free, preload;

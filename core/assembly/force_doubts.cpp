@@ -21,6 +21,8 @@ namespace {
 
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
 constexpr double no_length = 1e-9;         // of a spring [m]
+constexpr double strong_pull = 10.0;       // of a spring without a free length, by the weight of all bodies
+constexpr double earth = 9.81;             // [m/s^2]
 constexpr double most_damping = 1000.0;    // by that of the limit of swinging
 constexpr double most_stretch = 10.0;      // of a spring by a weight, by the model's size
 constexpr double most_press = 1.0;         // the same of one that is pressed together, by its length
@@ -84,6 +86,9 @@ class ForceDoubts {
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
+  BodyId other_body(const JointElement& joint, BodyId body) const {
+    return body_of(joint.marker_a) == body ? body_of(joint.marker_b) : body_of(joint.marker_a);
+  }
 
   std::array<double, 3> apart(const JointElement& joint) const {
     const double* a = at_start_.markers[at(joint.marker_a)].position;
@@ -107,8 +112,30 @@ class ForceDoubts {
     return any;
   }
 
+  /// Where none is given it is zero.
+  void judge_pull(const JointElement& joint, double length) const {
+    const auto free = joint.parameters->values.find(std::string_view("free_length"));
+    const double stiffness = number(joint, "stiffness"), preload = number(joint, "preload");
+    const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
+    if (turns || free == joint.parameters->values.end() || free->second.given || !(preload == 0.0)) return;
+    double mass = 0.0;
+    for (const Body& body : model_.bodies) mass += body.mass;
+    if (!(stiffness * length > strong_pull * earth * mass)) return;
+    doubt_("doubtful-length",
+           fmt::format(
+               "'{}' has no 'free_length', so that it pulls its ends together with {:.3g} N from the start, {:.2g} "
+               "times the weight of all bodies: give the length at which it is slack (its ends are {:.4g} m "
+               "apart)",
+               joint.name, stiffness * length, stiffness * length / (earth * mass), length),
+           joint);
+  }
+
   void judge_length(const JointElement& joint) const {
     const double free = number(joint, "free_length");
+    if (free == 0.0) {
+      const auto [x, y, z] = apart(joint);
+      judge_pull(joint, std::hypot(x, y, z));
+    }
     if (!(free > 0.0)) return;
     const auto [x, y, z] = apart(joint);
     const double length = std::hypot(x, y, z);
@@ -229,6 +256,7 @@ class ForceDoubts {
     const JointElement* first = nullptr;
     double stiffness = 0.0, push = 0.0;  ///< of all [N/m], largest sum of their forces at the start [N]
     double longest = 0.0, along = 0.0;   ///< [m], of the gravity that they hold [m/s^2]
+    double mass = 0.0;                   ///< of the body and of those that it alone holds [kg]
     bool pressed = true;                 ///< each by the weight, towards its other end
   };
 
@@ -237,7 +265,7 @@ class ForceDoubts {
     const std::optional<Hold> hold = hold_of(body);
     if (!hold || hold->first == nullptr) return;
     const Body& held = model_.bodies[at(body)];
-    const double stretch = hold->along * held.mass / hold->stiffness;
+    const double stretch = hold->along * hold->mass / hold->stiffness;
     const double most = hold->pressed ? most_press * std::max(hold->longest, system_.size())
                                       : most_stretch * std::max(hold->longest, system_.size());
     if (stretch > most) {
@@ -251,29 +279,31 @@ class ForceDoubts {
       return;
     }
     const double span = model_.settings.end - model_.settings.start;
-    const double period = 2.0 * std::numbers::pi * std::sqrt(held.mass / hold->stiffness);
-    const double way = 0.5 * hold->push / held.mass * span * span;
+    const double period = 2.0 * std::numbers::pi * std::sqrt(hold->mass / hold->stiffness);
+    const double way = 0.5 * hold->push / hold->mass * span * span;
     if (!(period > slow_swing * span) || hold->along > 0.0 || way > hardly_moved * system_.size()) return;
     doubt_("doubtful-value",
            fmt::format("'{}' hardly acts: {:.4g} kg of '{}' swing on {:.3g} N/m with a period of {:.3g} s, {:.0f} "
                        "times the run of {:.3g} s: check its stiffness and its unit, or the end of the run",
-                       hold->first->name, held.mass, held.name, hold->stiffness, period, period / span, span),
+                       hold->first->name, hold->mass, held.name, hold->stiffness, period, period / span, span),
            *hold->first);
   }
 
   /// Nothing where other elements hold the body, too.
   std::optional<Hold> hold_of(BodyId body) const {
     const Vector3& gravity = model_.bodies[at(body)].gravity;
-    Hold hold{.along = std::hypot(gravity[0], gravity[1], gravity[2])};
+    Hold hold{.along = std::hypot(gravity[0], gravity[1], gravity[2]), .mass = model_.bodies[at(body)].mass};
     for (const int j : joints_of_[at(body)]) {
       const JointElement& joint = model_.joints[at(j)];
       if (joint.gear >= 0) return std::nullopt;
       if (is_force_element(joint) && joint.parameters && has_formula(*joint.parameters)) return std::nullopt;
-      const double k = is_force_element(joint) && joint.parameters ? number(joint, "stiffness") : std::nan("");
+      const double k = is_force_element(joint) && joint.parameters ? stiffness_along(joint, gravity) : std::nan("");
       if (is_force_element(joint) && k > 0.0 && joint.ideal_layout().coordinate != Coordinate::angle) {
         add_spring(hold, joint, k, body);
       } else if (is_force_element(joint) && (k == 0.0 || number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
+      } else if (const BodyId other = other_body(joint, body); other != ground && joints_of_[at(other)].size() == 1) {
+        hold.mass += model_.bodies[at(other)].mass;
       } else if (joint.ideal_layout().coordinate == Coordinate::position && on_ground(joint) && driven_[at(j)] == 0) {
         const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
         hold.along = std::abs(axes[0] * gravity[0] + axes[3] * gravity[1] + axes[6] * gravity[2]);
@@ -282,6 +312,22 @@ class ForceDoubts {
       }
     }
     return hold;
+  }
+
+  /// Of a spring along its line; of an elastic bed along gravity, or its least where there is none [N/m].
+  double stiffness_along(const JointElement& joint, const Vector3& gravity) const {
+    if (const double k = number(joint, "stiffness"); !std::isnan(k)) return k;
+    const double of_axes[] = {number(joint, "stiffness.x"), number(joint, "stiffness.y"), number(joint, "stiffness.z")};
+    const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
+    const double amount = std::hypot(gravity[0], gravity[1], gravity[2]);
+    double along = 0.0, least = std::nan("");
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (std::isnan(of_axes[i])) continue;
+      least = std::fmin(least, of_axes[i]);
+      const double share = (axes[i] * gravity[0] + axes[3 + i] * gravity[1] + axes[6 + i] * gravity[2]) / amount;
+      along += share * share * of_axes[i];
+    }
+    return amount > 0.0 && !std::isnan(least) ? along : least;
   }
 
   void add_spring(Hold& hold, const JointElement& joint, double k, BodyId body) const {
@@ -294,7 +340,8 @@ class ForceDoubts {
     hold.stiffness += k;
     hold.push += std::abs((std::isnan(free) ? 0.0 : k * (length - free)) + (std::isnan(preload) ? 0.0 : preload));
     hold.longest = std::max({hold.longest, length, free});
-    hold.pressed = hold.pressed && towards > 0.0;
+    const bool bed = std::isnan(number(joint, "stiffness"));
+    hold.pressed = hold.pressed && (bed || towards > 0.0);
     if (hold.first == nullptr) hold.first = &joint;
   }
 

@@ -199,6 +199,19 @@ class Reach {
     return text;
   }
 
+  bool has_play() const {
+    return std::ranges::any_of(model_.joints, [](const JointElement& joint) { return joint.has_play; });
+  }
+  /// What prescribes motion besides a driver, and may be one too many.
+  std::string other_drivers(int d) const {
+    std::string names;
+    for (int other = 0; other < static_cast<int>(model_.drivers.size()); ++other) {
+      if (other == d || !prescribes(model_.drivers[at(other)].kind)) continue;
+      names += (names.empty() ? "'" : ", '") + model_.drivers[at(other)].name + "'";
+    }
+    return names.empty() ? names : fmt::format(", and is there one driver too many beside {}", names);
+  }
+
   std::string sentence(int d, const DriveRange& range, const Exit& exit) {
     const Driver& driver = model_.drivers[at(d)];
     const Coordinate kind = coordinate(d);
@@ -206,9 +219,10 @@ class Reach {
     const std::optional<Widest> most = widest(range, exit);
     if (range.to - range.from <= locked * unit(d)) {
       return fmt::format(
-          "t = {:.9g} s: driver '{}' cannot move joint '{}' beyond the play: {} it at {}; does each of them hold the "
-          "bodies that are meant, and do lengths and angles let the loop move [locked]",
-          t_, driver.name, model_.joints[at(driver.joint)].name, what_locks(driver.joint), words(end, kind));
+          "t = {:.9g} s: driver '{}' cannot move joint '{}'{}: {} it at {}; does each of them hold the bodies that are "
+          "meant, and do lengths and angles let the loop move{} [locked]",
+          t_, driver.name, model_.joints[at(driver.joint)].name, has_play() ? " beyond the play" : "",
+          what_locks(driver.joint), words(end, kind), other_drivers(d));
     }
     std::string text = fmt::format(
         "t = {:.9g} s: driver '{}' asks for a position that the mechanism cannot take: joint '{}' comes to a dead "

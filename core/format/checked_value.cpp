@@ -7,6 +7,7 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "format/doubtful_number.h"
 #include "format/parameter_scope.h"
 #include "format/path_override.h"
 #include "format/readout.h"
@@ -53,6 +54,7 @@ std::optional<Expression> CheckedValue::compile(const Node& text_node, std::stri
   }
   if (broken) return std::nullopt;
   try {
+    if (text.find('(') != std::string_view::npos) doubt_degrees(*this, text);
     return variables == nullptr ? Expression::compile(text, *reading_->scope, time_allowed)
                                 : Expression::compile(text, *reading_->scope, time_allowed, *variables);
   } catch (const ExpressionError& error) {

@@ -89,6 +89,35 @@ bool any_word(std::string_view text, Use&& use, Arguments arguments = Arguments:
   return false;
 }
 
+/// Functions of an angle.
+constexpr std::string_view circular_functions[] = {"sin", "cos", "tan"};
+
+bool ends_in_word(std::string_view text, std::string_view word) {
+  return text.ends_with(word) && (text.size() == word.size() || !is_word_part(text[text.size() - word.size() - 1]));
+}
+
+/// An angle of more than a turn in whole fives, or a multiple of 180 times t; 0: another, or none that is known.
+struct RoundAngle {
+  double number;  ///< [rad] or [rad/s]
+  bool in_time;
+};
+RoundAngle round_angle(std::string_view text, const Scope& scope) {
+  const auto is_multiple = [](double value, double of) {
+    return std::abs(value) < 1e6 && std::abs(value / of - std::round(value / of)) <= 1e-9;
+  };
+  try {
+    const Expression angle = Expression::compile(text, scope, true);
+    Jet value;
+    EvaluationFailure failure;
+    if (!angle.evaluate(0.3711, value, failure)) return {};
+    if (!angle.depends_on_time())
+      return {std::abs(value.value) > bare_limit::angle && is_multiple(value.value, 5.0) ? value.value : 0.0, false};
+    return {value.acceleration == 0.0 && is_multiple(value.rate, 180.0) ? value.rate : 0.0, true};
+  } catch (const ExpressionError&) {
+    return {};  // said where the whole is read, or a function of the motion
+  }
+}
+
 bool says_pi(const CheckedValue& written) {
   return any_word(written.node().text,
                   [](std::string_view word, bool parameter) { return !parameter && word == "pi"; });
@@ -150,16 +179,19 @@ void doubt_length(const CheckedValue& written, double value, double scale, doubl
                            written.path(), value, scale, value));
 }
 
-}  // namespace
-
-bool names_a_unit(const CheckedValue& written, Arguments arguments) {
-  if (!written.node().is_scalar()) return false;
+bool names_a_unit(const CheckedValue& written, std::string_view text, Arguments arguments) {
   const auto is_unit = [&](std::string_view word, bool parameter) {
     if (!parameter) return is_unit_name(word);
     const Quantity* quantity = written.reading().scope->find(word);
     return quantity != nullptr && quantity->kind == DimensionKind::dimensioned;
   };
-  return any_word(written.node().text, is_unit, arguments);
+  return any_word(text, is_unit, arguments);
+}
+
+}  // namespace
+
+bool names_a_unit(const CheckedValue& written, Arguments arguments) {
+  return written.node().is_scalar() && names_a_unit(written, written.node().text, arguments);
 }
 
 bool says_unit(const CheckedValue& value, Arguments arguments) {
@@ -291,10 +323,28 @@ void doubt_parameters(const ParameterBlock& block, const std::map<std::string, C
     } else if (unit == "rad/s") {
       doubt_angular_speed(written, number);
     } else if (unit == "m") {
-      doubt_length(written, number, scale, most_lengths);
+      doubt_length(written, number, scale, name == "lead" ? bare_limit::lead : most_lengths);
     } else {
       doubt_range(written, unit, number);
     }
+  }
+}
+
+void doubt_degrees(const CheckedValue& written, std::string_view text) {
+  for (std::size_t open = text.find('('); open != std::string_view::npos; open = text.find('(', open + 1)) {
+    const std::string_view before = text.substr(0, open);
+    if (std::ranges::none_of(circular_functions, [&](std::string_view name) { return ends_in_word(before, name); }))
+      continue;
+    const std::string_view angle = text.substr(open, after_bracket(text, open) - open);
+    if (names_a_unit(written, angle, Arguments::read)) continue;
+    const auto [number, in_time] = round_angle(angle, *written.reading().scope);
+    if (number == 0.0) continue;
+    written.warn(
+        "doubtful-angle",
+        fmt::format("'{0}' takes a sine, cosine or tangent of {1:.6g} rad{2}: write '{1:.6g} deg{3}' if degrees "
+                    "are meant, else the unit rad",
+                    written.path(), number, in_time ? "/s times t" : "", in_time ? "/s" : ""));
+    return;
   }
 }
 

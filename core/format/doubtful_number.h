@@ -20,6 +20,7 @@ inline constexpr double long_step = 0.1;                 ///< in whatever run [s
 inline constexpr double length = 100.0;                  ///< in terms of the lengths around it
 inline constexpr double start = 50.0;                    ///< likewise: of a slide at its start
 inline constexpr double bearing = 20.0;                  ///< likewise: radii, lengths and plays of bearings
+inline constexpr double lead = 2.0;                      ///< likewise: the way along a thread in a turn
 inline constexpr double slide_speed = 50.0;              ///< [m/s]
 inline constexpr double rows = 1e7;                      ///< of a result
 }  // namespace bare_limit
@@ -57,6 +58,9 @@ void doubt_interval(const CheckedValue& written, double interval, double span);
 /// lengths, 0 when unknown; a length without a unit that is `most_lengths` times as long is `doubtful-length`.
 void doubt_parameters(const ParameterBlock& block, const std::map<std::string, CheckedValue>& places, double scale,
                       double most_lengths = bare_limit::length);
+
+/// `doubtful-angle`: degrees in a sine, cosine or tangent of a formula that stands in the value, without their unit.
+void doubt_degrees(const CheckedValue& written, std::string_view text);
 
 /// `doubtful-value`: the stiffness that a contact law of the entry is given, as of no material.
 void doubt_contact_stiffness(const CheckedValue& entry, const ParameterBlock& block, const JointLayout& layout,

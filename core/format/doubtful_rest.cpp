@@ -137,7 +137,9 @@ class RestDoubts {
     if (!formula.evaluate(from, begin, failure) || !formula.evaluate(end - 1e-6 * (end - from), before, failure) ||
         !formula.evaluate(end, at_rest, failure) || !formula.evaluate(2.0 * end - from, after, failure))
       return unbounded;
-    const double change = std::abs(at_rest.value - begin.value);
+    // What rises and falls again changes by more than from its begin to its end.
+    const Course whole = course_of(formula, settings_, (end - from) / span());
+    const double change = std::max(std::abs(at_rest.value - begin.value), whole.known ? whole.high - whole.low : 0.0);
     const bool rests = std::abs(after.value - at_rest.value) <= 1e-9 * change;
     // A limit that min() sets to what grows is a kink, and of no time.
     const bool gently = std::abs(before.rate) * (end - from) <= 1e-3 * change;

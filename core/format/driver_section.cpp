@@ -191,6 +191,7 @@ class DriverEntry {
       return false;
     }
     if (!element(joint).has_play || element(joint).layout.coordinate != Coordinate::none) return true;
+    if (!usable(joint)) return false;  // what is wrong in it was said
     clearance_place.fail("driver-on-clearance",
                          "joint '" + element(joint).name + "' has clearance, which leaves no coordinate to drive", {},
                          "--ideal closes it");

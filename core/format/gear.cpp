@@ -1,6 +1,7 @@
 #include "format/gear.h"
 
 #include "format/doubtful_number.h"
+#include "format/doubtful_play.h"
 #include "format/gear_teeth.h"
 #include "format/joint_section.h"
 #include "format/loose_gear.h"
@@ -59,6 +60,7 @@ class GearEntry {
       loosen(draft_, gear, play, entry_);
       const JointLayout& layout = draft_.model.joints[static_cast<std::size_t>(joint_)].layout;
       doubt_contact_stiffness(entry_, *play.block, layout, draft_.length_scale);
+      doubt_play_inside(play, layout);
     }
     if (teeth && loose == nullptr && number && gear.ratio != 0.0) give_teeth(draft_, *teeth, gear);
   }

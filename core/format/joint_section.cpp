@@ -7,6 +7,7 @@
 #include "base/name_pattern.h"
 #include "component/declared.h"
 #include "format/doubtful_number.h"
+#include "format/doubtful_play.h"
 #include "format/gear.h"
 #include "format/joint_chain.h"
 #include "format/motion_names.h"
@@ -17,11 +18,6 @@
 
 namespace freeplay {
 namespace {
-
-// Of bearings: clearances are 0.1 to 1 % of the radius, worn ones and those of studies 5 %, and of a bolt of 6 mm in a
-// hole of 7 mm 17 %; polished surfaces are rough by 10 nm.
-constexpr double widest_play = 0.2;      // in smaller radii
-constexpr double narrowest_play = 1e-8;  // [m]
 
 bool same_text(const char* a, const char* b) { return a != nullptr && b != nullptr && std::string_view(a) == b; }
 
@@ -219,8 +215,8 @@ class JointEntry {
     element().layout = play ? layout : ideal.layout;
     element().has_play = play;
     if (play) element().twin = std::make_shared<const IdealTwin>(ideal);
-    if (twins) doubt_play(layout);
-    if (twins && parameters.block) doubt_inside(parameters, layout);
+    if (twins) doubt_play(entry_, layout, draft_.length_scale);
+    if (twins && parameters.block) doubt_play_inside(parameters, layout);
     if (parameters.block) doubt_contact_stiffness(entry_, *parameters.block, layout, draft_.length_scale);
     draft_.joint_usable[index_] = usable && known_;
   }
@@ -234,53 +230,9 @@ class JointEntry {
     const auto coordinate = ideal.values.find(std::string_view(component_->description.chain->coordinate));
     const int which = coordinate == ideal.values.end() ? 0 : coordinate->second.word;
     if (!make_chain(draft_, *component_, parameters, which, entry_, index_)) return;
-    doubt_play(element().layout);
-    doubt_inside(parameters, element().layout);
+    doubt_play(entry_, element().layout, draft_.length_scale);
+    doubt_play_inside(parameters, element().layout);
     doubt_contact_stiffness(entry_, *parameters.block, element().layout, draft_.length_scale);
-  }
-
-  void doubt_play(const JointLayout& layout) {
-    const double share = layout.clearance / layout.smaller_radius, scale = draft_.length_scale;
-    std::string against;
-    if (share > widest_play) {
-      against = fmt::format("{:.2g} times the smaller radius of its surfaces", share);
-    } else if (scale > 0.0 && layout.clearance > scale) {
-      against = fmt::format("more than the lengths of the mechanism, about {:.3g} m", scale);
-    } else if (layout.clearance > 0.0 && layout.clearance < narrowest_play) {
-      against = "less than the roughness of any surface";
-    }
-    if (against.empty()) return;
-    entry_.warn_at_key("doubtful-clearance", fmt::format("the clearance of joint '{}' is {:.4g} m, {}: check it, the "
-                                                         "radii and their units",
-                                                         entry_.key(), layout.clearance, against));
-  }
-
-  /// Plays of a bearing that are longer than everything else of it.
-  void doubt_inside(const CheckedParameters& parameters, const JointLayout& layout) {
-    double longest = 0.0;
-    const auto is_play = [](const std::string& path) { return path.ends_with("clearance"); };
-    const auto each_length = [&](auto&& use) {
-      for (const Parameter& parameter : parameters.block->component->description.parameters) {
-        const auto value = parameters.block->values.find(parameter.name);
-        const bool length = std::string_view(parameter.unit) == "m" && parameter.kind == ParameterKind::number;
-        if (length && value != parameters.block->values.end() && value->second.number > 0.0) {
-          use(value->first, value->second.number);
-        }
-      }
-    };
-    each_length([&](const std::string& path, double value) {
-      if (!is_play(path)) longest = std::max(longest, value);
-    });
-    each_length([&](const std::string& path, double value) {
-      const auto place = parameters.places.find(path);
-      if (!is_play(path) || !(longest > 0.0) || value <= longest || place == parameters.places.end()) return;
-      if (layout.clearance >= value) return;  // reported for the radial clearance already
-      place->second.warn(
-          "doubtful-clearance",
-          fmt::format("'{}' is {:.4g} m, more than all radii and lengths of the bearing ({:.4g} m): check "
-                      "the number and its unit",
-                      place->second.path(), value, longest));
-    });
   }
 
   Draft& draft_;

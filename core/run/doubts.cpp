@@ -17,6 +17,7 @@ namespace freeplay {
 namespace {
 constexpr double fewest_steps_in_period = 10.0;  // of a motion that carries energy
 constexpr double least_energy = 1e-6;            // by masses lifted by the model's size, or crossing it in the run
+constexpr double most_damped = 15.0;             // force of a contact by that of its stiffness
 
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
 bool in_a_loop(const Model& model, int without) {
@@ -208,6 +209,26 @@ void RunDoubts::note_unused_play() {
          .level = Trust::doubtful,
          .message = joint + ": its journal never moved in its bearing: nothing loads it, or other joints hold it",
          .element = joint});
+  }
+}
+
+// Laws that divide their damping by the speed of approach press without bound where a contact began with next to none.
+void RunDoubts::note_damped_peaks() {
+  for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
+    const double times = run_.watch.damped_by(j);
+    if (!(times > most_damped)) continue;
+    const std::string joint = written_name(run_.model.joints[at(j)]);
+    run_.outcome.doubts.push_back(
+        {.id = "law-range",
+         .level = Trust::doubtful,
+         .message =
+             fmt::format("{}: where it presses hardest, damping makes {:.2g} times of what its stiffness presses with: "
+                         "a law of impact divides by the speed at which the contact began, here next to "
+                         "nothing; start it under its load ('initial: loaded'), or compare with a law without loss",
+                         joint, times),
+         .element = joint,
+         .value = times,
+         .limit = most_damped});
   }
 }
 

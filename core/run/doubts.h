@@ -27,9 +27,10 @@ class RunDoubts {
   bool note_warnings();
   /// Once the run is over: warnings of joints, and play that was never used.
   [[gnu::cold]] void format_warnings();
-  void note_unused_play();
-  void judge_motion();
-  void note_lasting_blows();
+  [[gnu::cold]] void note_unused_play();
+  [[gnu::cold]] void note_damped_peaks();
+  [[gnu::cold]] void judge_motion();
+  [[gnu::cold]] void note_lasting_blows();
 
   void save(ArchiveWriter& archive) const;
   void restore(ArchiveReader& archive);

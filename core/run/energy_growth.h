@@ -25,7 +25,7 @@ class EnergyGrowth {
     double value, size;  ///< [J]
   };
   Energy energy_of(const Evaluation& e) const;
-  double energy_of_drives() const;
+  [[gnu::cold]] double energy_of_drives() const;
 
   RunContext& run_;
   double explained_energy_ = 0.0;  // the largest that work was found for [J]

@@ -32,7 +32,7 @@ struct Simulation::Impl {
   std::span<double> input(std::size_t index);
   std::vector<double> acting_efforts();
   const Outcome& finish();
-  RunState save() const;
+  [[gnu::cold]] RunState save() const;
   EndedMotion motion() const;
   void restore(const RunState& state);
   template <class Self, class Archive>
@@ -126,6 +126,7 @@ const Outcome& Simulation::Impl::finish() {
   outcome.factorizations = context.solver.factorizations();
   doubts.format_warnings();
   doubts.note_unused_play();
+  doubts.note_damped_peaks();
   doubts.judge_motion();
   doubts.note_lasting_blows();
   adaptive.doubt_steps();

@@ -21,10 +21,10 @@
 
 namespace freeplay {
 
-std::string bytes_of(const RunState& state);
+[[gnu::cold]] std::string bytes_of(const RunState& state);
 
 /// Throws Error{input}: "state-format" where the bytes are no saved state, or one of another version of this form;
 /// "state-damaged" where some are missing, more than there should be, or changed.
-RunState state_of(std::string_view bytes);
+[[gnu::cold]] RunState state_of(std::string_view bytes);
 
 }  // namespace freeplay

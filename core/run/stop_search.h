@@ -64,7 +64,7 @@ class StopSearch {
   bool seek(const Condition& condition, const std::array<double, places>& at, double& part);
   bool seek_top(const Condition& condition, std::array<Place, 3> around, double& part);
   bool narrow(const Condition& condition, Place before, Place after, double& part);
-  void fill_outcome(const Condition& condition, bool located);
+  [[gnu::cold]] void fill_outcome(const Condition& condition, bool located);
 
   RunContext& run_;
   Recorder& recorder_;

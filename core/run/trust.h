@@ -27,7 +27,7 @@ struct TrustReason {
 class Verdict {
  public:
   /// A second reason with the same id, element and message is left out.
-  void add(TrustReason reason);
+  [[gnu::cold]] void add(TrustReason reason);
   void add(std::span<const TrustReason> reasons) {
     for (const TrustReason& reason : reasons) add(reason);
   }

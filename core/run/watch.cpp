@@ -15,6 +15,8 @@ namespace freeplay {
 namespace {
 constexpr double look_again = 1.21;  // where the square of a force has grown so much since the last look
 constexpr double unmoved = 1e-6;     // of the clearance
+constexpr double nearly_deepest = 0.25;
+constexpr double by_elastic = 2.5;  // of force times depth to what is stored, of K delta^1.5
 }  // namespace
 
 void SingularPassage::add(double regularity, double t, RunExtremes& seen) {
@@ -85,6 +87,11 @@ int RunWatch::add(std::span<const double> row, const Evaluation& e) {
     const double squared = force_squared(e, contact.joint);
     contact.depth.add(row[at(contact.penetration)]);
     contact.due = std::max(contact.due, look_again * squared);
+    if (squared > contact.most) {
+      const double depth = row[at(contact.penetration)];
+      contact.most = squared, contact.depth_then = depth;
+      contact.by_spring = std::sqrt(squared) * depth / e.potential[at(contact.joint)];
+    }
     const bool senseless =
         row[at(contact.penetration)] > contact.deepest || squared > contact.strongest * contact.strongest;
     if (senseless && found < 0) found = contact.joint;
@@ -202,6 +209,14 @@ void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
     const double motion = turns ? seen_.size * (second + rate * rate) : second + rate * rate / seen_.size;
     seen_.drive_motion = std::max(seen_.drive_motion, motion);
   }
+}
+
+double RunWatch::damped_by(int joint) const {
+  for (const Contact& contact : contacts_) {
+    if (contact.joint != joint || !(contact.depth_then >= nearly_deepest * contact.depth.most)) continue;
+    if (std::isfinite(contact.by_spring)) return contact.by_spring / by_elastic;
+  }
+  return 0.0;
 }
 
 bool RunWatch::never_moved(int joint) const {

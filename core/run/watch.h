@@ -165,6 +165,9 @@ class RunWatch {
     }
     return false;
   }
+  /// How many times as hard a joint with play pressed, where it pressed hardest and nearly deepest, as its stiffness
+  /// alone does at that depth; 0 where it did not. Of a force by delta^1.5; of one by delta 0.8 of it.
+  double damped_by(int joint) const;
   /// Whether the journal of a joint with play never moved in its bearing, nor touched it.
   bool never_moved(int joint) const;
   const RunExtremes& seen() const { return seen_; }
@@ -183,9 +186,11 @@ class RunWatch {
     double strongest = 0.0;  // force that no material carries [N]
     RunExtremes::Range depth{};
     double due = 0.0;  // square of the force from which on the row is looked at again [N^2]
+    // At the largest force, its square [N^2], the depth [m], and force times depth by what the contact stores.
+    double most = 0.0, depth_then = 0.0, by_spring = 0.0;
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.depth, self.due);
+      archive(self.depth, self.due, self.most, self.depth_then, self.by_spring);
     }
   };
   static double force_squared(const Evaluation& e, int joint) {

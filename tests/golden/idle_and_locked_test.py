@@ -197,7 +197,7 @@ class IdleAndLocked(ProgramTest):
         self.write("m.yaml", changed(BOX, "stiffness: 2e4", "stiffness: 5e3", {"end: 0.1": "end: 1"}))
         _, err = self.freeplay("run", "m.yaml", "--out", "r", "--force")
         self.assertIn("'foot'", err)
-        self.assertIn("pressed together to less than a twentieth of its free length", err)
+        self.assertIn("pressed together to less than a tenth of its free length", err)
         reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
         self.assertIn("law-range", [reason["id"] for reason in reasons])
 

@@ -168,7 +168,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"fault of a constructor",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1,\n"
                 "    limit: 1 mm, contact: {law: power, K: 1e9}}}\n",
-                "6:12 out-of-range "},
+                "5:54 doubtful-clearance 6:12 out-of-range "},
         Mistake{"fault of a law's constructor",
                 "joints:\n  a: {type: pin, between: [ground, rod], play: {gap: 1,\n"
                 "    contact: {law: power, K: 1e9, soft: 1}}}\n",
