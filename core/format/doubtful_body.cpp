@@ -301,8 +301,24 @@ class BodyDoubts {
     return value && !names_a_unit(*value);
   }
 
+  /// Of a rotor on one pin, which may be a little unbalanced.
+  bool judge_lone_com(std::size_t i) const {
+    const double outside = outlines_[i].outside(body(i).com);
+    if (!(scale() > 0.0) || !(outside > body_limit::lone_com * scale())) return false;
+    if (outside <= body_limit::lone_com_gyration * gyration_[i]) return false;
+    const auto value = key_of(i, "com");
+    if (!value || is_foreign(i) || place_says_unit(*value)) return false;
+    warn(
+        i, "com", "doubtful-length",
+        fmt::format("the centre of mass of '{}' is {:.4g} m away from its joint where the lengths of the mechanism are "
+                    "about {:.3g} m: write the unit after the number, as in 'mm'",
+                    body(i).name, outside, scale()));
+    return true;
+  }
+
   bool judge_com(std::size_t i) const {
     const FrameOutline& outline = outlines_[i];
+    if (outline.places.size() == 1) return judge_lone_com(i);
     const double extent = outline.extent(), outside = outline.outside(body(i).com), k = gyration_[i];
     if (outline.places.size() < 2 || !(extent > 1e-12) || !(k > 0.0)) return false;
     if (outside <= body_limit::com_outside * extent || outside <= body_limit::com_outside_gyration * k) return false;

@@ -33,6 +33,9 @@ inline constexpr double thinnest = 1e-5, thin_reach = 5.0, thin_mass = 1e-4, thr
 /// Farther than `lump` radii of gyration it is a lump on an arm, unless farther than `far` boxes.
 inline constexpr double com_outside = 0.5, com_outside_gyration = 2.0, lump = 4.0, far = 3.0;
 inline constexpr double least_of_box = 0.15, most_of_box = 0.6;
+/// Distance of the centre of mass of a body on one joint from it, without a unit: in lengths of the mechanism, of which
+/// a load on a rope has 30, and in radii of gyration.
+inline constexpr double lone_com = 20.0, lone_com_gyration = 300.0;
 /// How many times smaller the moment across the line of the frames is than that about it, in space.
 inline constexpr double axis_ratio = 12.0;
 }  // namespace body_limit

@@ -312,11 +312,16 @@ void doubt_parameters(const ParameterBlock& block, const std::map<std::string, C
       break;
     }
     const auto value = owner->values.find(name);
-    if (value == owner->values.end() || !std::isfinite(value->second.number) || !written.node().is_scalar()) continue;
+    if (value == owner->values.end()) continue;
     const auto& table = owner->component->description.parameters;
     const auto row = std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.name == name; });
-    if (row == table.end() || row->kind != ParameterKind::number) continue;
+    if (row == table.end()) continue;
     const std::string unit = unit_text(*row, *owner);
+    for (std::size_t i = 0; unit == "m" && written.node().is_list() && i < written.node().items.size(); ++i) {
+      if (i < value->second.vector.size()) doubt_length(written.item(i), value->second.vector[i], scale, most_lengths);
+    }
+    if (!std::isfinite(value->second.number) || !written.node().is_scalar() || row->kind != ParameterKind::number)
+      continue;
     const double number = value->second.number;
     if (unit == "rad") {
       doubt_angle(written, number);

@@ -73,6 +73,20 @@ drivers: {motor: {joint: pin, kind: angle, value: "0.02*sin(90 deg*t/(1 s))"}}
 simulation: {end: 1, step: 1e-3}
 """.replace("bodies: {", "bodies: {ball: {mass: 1, inertia: 1e-3}, ")
 
+SLOT = """freeplay: 1
+bodies:
+  crank: {mass: 0.8, inertia: 5e-4, frames: {pin: [0.03, 0]}}
+  yoke: {mass: 1.2, inertia: 2e-3, frames: {slot: {angle: 90 deg}}}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  guide: {type: prismatic, between: [ground, yoke]}
+  slot: {type: point-on-line, between: [yoke/slot, crank/pin], clearance: {pin_radius: 8 mm, gap: 0.1 mm, slot: [-60 mm, 60 mm],
+         contact: {law: hertz, K: 1e9}}}
+drivers: {motor: {joint: main, kind: velocity, value: 40}}
+initial: {joints: {main: 0}}
+simulation: {end: 0.5, step: 1e-5}
+"""
+
 SLIPS = [  # model, text, what stands in its place, id, words
     (AXIS, "gap: 30 um", "gap: 30 mm", "doubtful-clearance", "0.75 times the smallest radius or width beside it (0.04 m)"),
     (TEETH, "gap: 0.1 mm", "gap: 0.05", "doubtful-clearance", "'joints.mesh.clearance.gap' is 0.05 m, 0.5 times the smallest"),
@@ -83,10 +97,12 @@ SLIPS = [  # model, text, what stands in its place, id, words
     (JACK, "lead: 8 mm", "lead: 8", "doubtful-length", "write the unit after the number, as in '8 mm'"),
     (ARM, "at: 120 deg", "at: 120", "doubtful-angle", "takes a sine, cosine or tangent of 120 rad: write '120 deg'"),
     (ARM, "90 deg*t/(1 s)", "360*t", "doubtful-angle", "takes a sine, cosine or tangent of 360 rad/s times t: write '360 deg/s'"),
+    (DECK, "com: [6 mm, 0]", "com: [60, 0]", "doubtful-length", "the centre of mass of 'rotor' is 60 m away from its joint"),
+    (SLOT, "[-60 mm, 60 mm]", "[-60, 60]", "doubtful-length", "write the unit after the number, as in '60 mm'"),
     (DECK, "100*smooth(t, 0, 1)", "100*(smooth(t, 0, 1000) - smooth(t, 4000, 5000))", "doubtful-time", "goes on to 5000 s"),
 ]
 SOUND = [
-    *[(model, "", "") for model in (AXIS, TEETH, DECK, WHEEL, JACK, ARM)],
+    *[(model, "", "") for model in (AXIS, TEETH, DECK, WHEEL, JACK, ARM, SLOT)],
     (AXIS, "gap: 30 um", "gap: 7 mm"),
     (TEETH, "gap: 0.1 mm", "backlash: 2 deg"),
     (DECK, "y: 150e3", "y: 8e3"),
@@ -123,19 +139,7 @@ class UnitSlips(ProgramTest):
         self.assertIn("more than ten times its free length", out)
 
     def test_a_pin_that_is_driven_through_the_end_of_its_slot_ends_the_run(self):
-        text = """freeplay: 1
-bodies:
-  crank: {mass: 0.8, inertia: 5e-4, frames: {pin: [0.03, 0]}}
-  yoke: {mass: 1.2, inertia: 2e-3, frames: {slot: {angle: 90 deg}}}
-joints:
-  main: {type: revolute, between: [ground, crank]}
-  guide: {type: prismatic, between: [ground, yoke]}
-  slot: {type: point-on-line, between: [yoke/slot, crank/pin], clearance: {pin_radius: 8 mm, gap: 0.1 mm, slot: [-6 mm, 6 mm],
-         contact: {law: hertz, K: 1e9}}}
-drivers: {motor: {joint: main, kind: velocity, value: 40}}
-initial: {joints: {main: 0}}
-simulation: {end: 0.5, step: 1e-5}
-"""
+        text = SLOT.replace("60 mm", "6 mm")
         _, err = self.freeplay("run", self.write("m.yaml", text), "--out", "r", code=4)
         self.assertIn("more than clearance and smaller radius together", err)
 
