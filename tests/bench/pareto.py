@@ -65,10 +65,9 @@ def measure(bench, problem):
         records.append(record)
         try:
             run = bench.program.run(problem.file(), options)
-            error = largest_distance(run.columns(problem.points), points)
+            record.update(error=largest_distance(run.columns(problem.points), points), steps=run.steps, rate=run.rate)
             if not problem.once:
-                run = fastest(lambda: bench.program.run(timed, options), *TRIED)
-            record.update(error=error, rate=run.rate, steps=run.steps)
+                record["rate"] = fastest(lambda: bench.program.run(timed, problem.timed(options)), *TRIED).rate
         except Failed as failure:
             record["failure"] = str(failure)
     bench.print(table(["integrator", "", "[s] or [m]", "error [m]", "wall s/s", "steps"], [
@@ -111,7 +110,7 @@ def compare(bench, problem, records, theirs):
     timed = problem.timed_file(bench.build)
 
     def our_rate(record):
-        return fastest(lambda: bench.program.run(timed, record["options"]), *COMPARED).rate
+        return fastest(lambda: bench.program.run(timed, problem.timed(record["options"])), *COMPARED).rate
 
     def their_rate(record):
         return bench.hand.again(problem, record)
