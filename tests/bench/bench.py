@@ -23,7 +23,7 @@ import studies
 import versus
 from hand_written import HandWritten, source_folder, trajectories
 from problems import PROBLEMS, ROOT
-from timing import Failed, Program
+from timing import Failed, Program, RepeatedRun
 
 PARTS = {
     "kernels": ("evaluations, factors, steps, laws, rows and loading, each by itself", parts.kernels),
@@ -48,6 +48,7 @@ class Bench:
     def __init__(self, options):
         self.build, self.quick, self.kernels = os.path.abspath(options.build), options.quick, options.kernels
         self.passes = 1 if options.quick else 5
+        self.repeated = RepeatedRun(options.repeated)
         self.program = Program(options.program, os.path.join(self.build, "runs"))
         source = source_folder()
         self.trajectories = trajectories(source)
@@ -83,6 +84,7 @@ def parser():
     words.add_argument("--only-words", action="store_true", help=argparse.SUPPRESS)  # are looked at, before anything is built
     words.add_argument("--program", default=os.path.join(ROOT, "build", "release", "freeplay"), help=argparse.SUPPRESS)
     words.add_argument("--kernels", default=os.path.join(ROOT, "build", "release", "tests", "kernel_bench"), help=argparse.SUPPRESS)
+    words.add_argument("--repeated", default=os.path.join(ROOT, "build", "release", "tests", "repeated_run"), help=argparse.SUPPRESS)
     words.add_argument("--build", default=os.path.join(ROOT, "build", "bench"), help=argparse.SUPPRESS)
     return words
 

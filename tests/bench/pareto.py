@@ -5,10 +5,8 @@ import json
 import os
 
 from tables import table
-from timing import Failed, alternate, fastest, largest_distance, median, ratio
+from timing import Failed, alternate, largest_distance, median, ratio
 
-# Of several runs the fastest counts, as of the hand-written programs: so many, and for so many seconds.
-TRIED, COMPARED = (2, 0.1), (3, 0.5)
 FINALISTS = 6  # of either side that are measured again before one is chosen
 
 
@@ -67,7 +65,7 @@ def measure(bench, problem):
             run = bench.program.run(problem.file(), options)
             record.update(error=largest_distance(run.columns(problem.points), points), steps=run.steps, rate=run.rate)
             if not problem.once:
-                record["rate"] = fastest(lambda: bench.program.run(timed, problem.timed(options)), *TRIED).rate
+                record["rate"] = problem.rate(bench, timed, options)
         except Failed as failure:
             record["failure"] = str(failure)
     bench.print(table(["integrator", "", "[s] or [m]", "error [m]", "wall s/s", "steps"], [
@@ -110,7 +108,7 @@ def compare(bench, problem, records, theirs):
     timed = problem.timed_file(bench.build)
 
     def our_rate(record):
-        return fastest(lambda: bench.program.run(timed, problem.timed(record["options"])), *COMPARED).rate
+        return problem.rate(bench, timed, record["options"])
 
     def their_rate(record):
         return bench.hand.again(problem, record)

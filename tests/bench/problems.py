@@ -36,12 +36,10 @@ class Problem:
     def timed_file(self, folder):
         return with_interval(folder, self.model, self.timed_interval) if self.timed_interval else self.file()
 
-    def timed(self, options):
-        """The same run, over the time for which programs by hand tell theirs."""
-        if not self.timed_end:
-            return options
-        place = options.index("--end") + 1
-        return [*options[:place], repr(self.timed_end), *options[place + 1:]]
+    def rate(self, bench, timed, options):
+        """Seconds for each second of the motion, over the time for which programs by hand tell theirs."""
+        place, end = options.index("--end") + 1, self.timed_end or self.end
+        return bench.repeated.seconds(timed, [*options[:place], repr(end), *options[place + 1:]]) / end
 
     def options(self, *more):
         words = ["--end", repr(self.end)]

@@ -11,6 +11,7 @@ import unittest
 from program import PROGRAM, ROOT, ProgramTest
 
 FOLDER = os.path.join(ROOT, "tests", "bench")
+REPEATED = ["--repeated", os.path.join(os.environ["FREEPLAY_BUILD"], "tests", "repeated_run")]
 sys.path.insert(0, FOLDER)
 
 
@@ -19,7 +20,7 @@ class Bench(ProgramTest):
         environment = {name: value for name, value in os.environ.items() if name != "FREEPLAY_LOWER_BOUND"}
         if lower_bound:
             environment["FREEPLAY_LOWER_BOUND"] = lower_bound
-        done = subprocess.run([sys.executable, "-B", os.path.join(FOLDER, "bench.py"), *words, "--program", PROGRAM,
+        done = subprocess.run([sys.executable, "-B", os.path.join(FOLDER, "bench.py"), *words, "--program", PROGRAM, *REPEATED,
                                "--build", self.path("bench")], capture_output=True, text=True, env=environment)
         self.assertEqual(code, done.returncode, done.stdout + done.stderr)
         return done.stdout, done.stderr
