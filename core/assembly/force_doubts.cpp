@@ -15,6 +15,7 @@
 #include "assembly/given_damping.h"
 #include "base/index.h"
 #include "model/force_element.h"
+#include "model/whole_mass.h"
 
 namespace freeplay {
 namespace {
@@ -118,8 +119,7 @@ class ForceDoubts {
     const double stiffness = number(joint, "stiffness"), preload = number(joint, "preload");
     const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
     if (turns || free == joint.parameters->values.end() || free->second.given || !(preload == 0.0)) return;
-    double mass = 0.0;
-    for (const Body& body : model_.bodies) mass += body.mass;
+    const double mass = whole_mass(model_).mass;
     if (!(stiffness * length > strong_pull * earth * mass)) return;
     doubt_("doubtful-length",
            fmt::format(
@@ -132,13 +132,10 @@ class ForceDoubts {
 
   void judge_length(const JointElement& joint) const {
     const double free = number(joint, "free_length");
-    if (free == 0.0) {
-      const auto [x, y, z] = apart(joint);
-      judge_pull(joint, std::hypot(x, y, z));
-    }
-    if (!(free > 0.0)) return;
     const auto [x, y, z] = apart(joint);
     const double length = std::hypot(x, y, z);
+    if (free == 0.0) judge_pull(joint, length);
+    if (!(free > 0.0)) return;
     if (length < no_length) {
       doubt_("doubtful-length",
              fmt::format("the ends of '{}' are at one place at the start, where it has no direction: with its free "

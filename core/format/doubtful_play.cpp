@@ -1,6 +1,8 @@
 #include "format/doubtful_play.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -75,7 +77,7 @@ void doubt_play_inside(const CheckedParameters& parameters, const JointLayout& l
     place->second.warn("doubtful-angle",
                        fmt::format("'{0}' is {1:.4g} rad, that is {2:.3g} deg, which teeth do not have: write "
                                    "'{1:.4g} deg' if degrees are meant",
-                                   place->second.path(), value, value * 57.29577951308232));
+                                   place->second.path(), value, value * 180.0 / M_PI));
   });
 }
 

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <limits>
+#include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 

@@ -6,7 +6,6 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 
 
 # The kernel counts the memory of who starts a program as the program's own, so a small process starts it.
@@ -60,7 +59,7 @@ def measured(words, told=subprocess.DEVNULL):
 
 class RepeatedRun:
     """A program that runs a model again and again in one process, as those written by hand do: the first run of a process brings
-    pages of the program into memory, a third of its 0.3 ms where it is short."""
+    pages of the program into memory."""
 
     def __init__(self, path):
         self.path = os.path.abspath(path)
@@ -103,15 +102,6 @@ class Program:
             run = Run(folder, *measured(words, output))
             output.seek(0)
             return run, output.readlines()
-
-
-def fastest(call, times, seconds):
-    """The run of the least rate of at least `times`, and of as many as fit into `seconds`: on a machine that is not idle
-    a short run is seldom undisturbed."""
-    end, runs = time.perf_counter() + seconds, []
-    while len(runs) < times or time.perf_counter() < end:
-        runs.append(call())
-    return min(runs, key=lambda run: run.rate)
 
 
 def median(values):

@@ -5,7 +5,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import types
 import unittest
 
 from program import PROGRAM, ROOT, ProgramTest
@@ -163,8 +162,6 @@ class Bench(ProgramTest):
         self.assertAlmostEqual(5.0 / 3.0, whole)
         self.assertAlmostEqual(1.7, slope)
         self.assertAlmostEqual(2.0, steepest)
-        rates = iter([3.0, 1.0, 2.0])
-        self.assertEqual(1.0, timing.fastest(lambda: types.SimpleNamespace(rate=next(rates)), 3, 0.0).rate)
         self.assertEqual(5.0, timing.largest_distance([[0.0, 0.0], [3.0, 4.0]], [[0.0, 1.0], [0.0, 0.0]]))
 
 
