@@ -12,6 +12,7 @@ constexpr double suspicious =
 constexpr double digits = 1e-9;  // of potential energies that their differences keep, at least
 constexpr double transmission = 10.0;  // speed of bodies, by that of drivers: a mechanism may come to it in a step
 constexpr double unexplained = 2.0;    // growth of energy, by all work that powers at both ends could have done
+constexpr double no_energy = 1e-200;   // [J]: squares of the speeds that make it lose their digits
 }  // namespace
 
 // Of motion and of what joints store: without gravity's, which has no zero. What a spring stores has none either where
@@ -67,7 +68,7 @@ double EnergyGrowth::energy_of_drives() const {
 // alone.
 bool EnergyGrowth::too_large() {
   const Energy after = energy_of(run_.e_trial);
-  if (after.size <= suspicious * explained_energy_) return false;
+  if (after.size <= std::max(suspicious * explained_energy_, no_energy)) return false;
   const double dt = run_.trial.t() - run_.accepted.t();
   if (run_.kinks.next(run_.accepted.t(), run_.trial.t()) <= run_.trial.t()) return false;
   const double before = energy_of(run_.e_accepted).value,

@@ -160,6 +160,19 @@ TEST(FailedRun, OfABodyWithoutConstraintsSaysWhyAsAnyOther) {
   }
 }
 
+// Squares of the first speeds of such a motion are below the smallest number.
+TEST(Recovery, AMotionThatBeginsFromNextToNothingIsFollowed) {
+  for (const char* settings : {"step: 0.1 ms", "accuracy: 1 um"}) {
+    const ModelRun run(
+        std::string("freeplay: 1\nbodies: {arm: {mass: 3, inertia: 0.1, com: [0.2, 0]}}\n"
+                    "joints: {pin: {type: revolute, between: [ground, arm]}}\n"
+                    "drivers: {motor: {joint: pin, kind: angle, value: \"0.5*exp(-((t - 1.2)/0.025)^2)\"}}\n"
+                    "simulation: {end: 1.4 s, ") +
+        settings + "}\n");
+    EXPECT_EQ(run.outcome().status, RunStatus::completed) << run.outcome().reason;
+  }
+}
+
 TEST(FailedRun, AJointThatAllowsNoLengthOfTimeEndsIt) {
   const ModelRun run = run_puck("type: faulty, fault: limit", "accuracy: 1 um");
   EXPECT_EQ(run.outcome().exit_code, 5);
