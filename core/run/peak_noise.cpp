@@ -21,6 +21,7 @@ constexpr std::size_t gaps_of_parts = 8;    // between parts,
 constexpr double widening_of_parts = 5.0;   // and of their scale
 constexpr double unknown = 0.5;             // of the value, where one burst alone was seen
 constexpr double chaotic = 0.3;             // of what chance can do: from there on bursts are draws
+constexpr int steps_at_rest = 50;           // for which a contact is on before it rests
 constexpr double same_speed = 1.05;         // an approach this much faster than the separation before is driven
 
 /// What impacts make of a small difference, of all that chance can do.
@@ -98,7 +99,8 @@ std::vector<int> groups_of_values(const Model& model, const PeakValues& places, 
 }  // namespace
 
 PeakNoise::PeakNoise(const Model& model, const PeakValues& places)
-    : from_(model.settings.start + model.settings.discard),
+    : accuracy_(model.settings.adaptive ? model.settings.accuracy : 0.0),
+      from_(model.settings.start + model.settings.discard),
       part_length_((model.settings.end - from_) / parts),
       part_end_(from_ + part_length_),
       impacts_(model.bodies.size()),
@@ -117,6 +119,13 @@ PeakNoise::PeakNoise(const Model& model, const PeakValues& places)
   if (!active_) return;
   groups_ = groups_of_values(model, places, Groups(model));
   values_.resize(places.size());
+  if (accuracy_ == 0.0) return;
+  ringing_.resize(places.size());
+  rests_.resize(model.bodies.size());
+  for (int j = 0; j < static_cast<int>(kinds_.size()); ++j) {
+    const std::size_t depth = places.penetration(j);
+    if (std::ranges::any_of(kinds_[at(j)], &EventKind::begins) && groups_[depth] >= 0) shallow_.push_back({depth});
+  }
 }
 
 void PeakNoise::event(int joint, int event, std::span<const double> fields) {
@@ -147,6 +156,25 @@ void PeakNoise::add(double t, std::span<const double> values) {
     part.largest = values[i];
     if (groups_[i] >= 0) part.impacts = impacts_[at(groups_[i])];
   }
+  if (!shallow_.empty()) follow_ringing(values);
+}
+
+void PeakNoise::follow_ringing(std::span<const double> values) {
+  std::ranges::fill(rests_, 0);
+  for (ShallowContact& contact : shallow_) {
+    const double depth = values[contact.depth];
+    contact.steps = depth > 0.0 && depth < accuracy_ ? std::min(contact.steps + 1, steps_at_rest + 1) : 0;
+    int& rests = rests_[at(groups_[contact.depth])];
+    rests = std::max(rests, contact.steps);
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const int rests = groups_[i] >= 0 ? rests_[at(groups_[i])] : 0;
+    if (rests > steps_at_rest) {
+      ringing_[i].see(values[i]);
+    } else if (rests == steps_at_rest) {
+      ringing_[i].restart(values[i]);
+    }
+  }
 }
 
 int PeakNoise::growing_impacts() const { return impacts_.empty() ? 0 : *std::ranges::max_element(impacts_); }
@@ -161,7 +189,7 @@ double PeakNoise::apart(std::size_t value) const {
 bool PeakNoise::repeats(int group) const {
   for (std::size_t j = 0; j < contacts_.size(); ++j) {
     if (groups_[forces_[j]] != group || !std::ranges::any_of(kinds_[j], &EventKind::begins)) continue;
-    if (apart(forces_[j]) > same_peak * std::ranges::max(seen(forces_[j]), {}, &Part::largest).largest) return false;
+    if (apart(forces_[j]) > same_peak * largest_seen(forces_[j])) return false;
   }
   return true;
 }
@@ -189,6 +217,22 @@ PeakNoise::Bursts PeakNoise::bursts(std::span<const Part> seen, const std::funct
 
 double PeakNoise::of(std::size_t value) const {
   if (!active_ || groups_[value] < 0) return 0.0;
+  return std::max(by_chance(value), std::min(by_ringing(value), largest_seen(value)));
+}
+
+double PeakNoise::largest_seen(std::size_t value) const {
+  return std::ranges::max(seen(value), {}, &Part::largest).largest;
+}
+
+double PeakNoise::by_ringing(std::size_t value) const {
+  // Where one contact goes deeper the others' forces are little of all that there is.
+  const auto deep = [&](const ShallowContact& contact) {
+    return groups_[contact.depth] == groups_[value] && largest_seen(contact.depth) >= accuracy_;
+  };
+  return ringing_.empty() || std::ranges::any_of(shallow_, deep) ? 0.0 : ringing_[value].largest();
+}
+
+double PeakNoise::by_chance(std::size_t value) const {
   const Part peak = std::ranges::max(seen(value), {}, &Part::largest);
   const double most = peak.largest, grown = grown_by(peak.impacts);
   const Bursts later = bursts(

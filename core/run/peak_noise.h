@@ -9,6 +9,7 @@
 
 #include "model/model.h"
 #include "run/peak_values.h"
+#include "run/ringing.h"
 
 namespace freeplay {
 
@@ -31,10 +32,14 @@ namespace freeplay {
 /// 3. What comes later. A peak that stands early in the window, where little has grown yet, is that of every run, but
 ///    what chance does after it may pass it: the noise reaches to as far as 2. says of the bursts after it.
 ///
+/// 4. Ringing under an accuracy. Where all contacts of the group stay less deep than the accuracy and one of them
+/// rests, errors within it let the force swing about what it would be: the noise is at least the largest such swing
+/// (see Ringing).
+///
 /// The noise is the peak at most: then its power of ten is all that is known.
 ///
-/// Without impacts the noise is zero, and so is that of loads that the model gives. The cost is a comparison for each
-/// value and step.
+/// Without impacts or ringing the noise is zero, and so is that of loads that the model gives. The cost is a comparison
+/// for each value and step.
 class PeakNoise {
  public:
   [[gnu::cold]] PeakNoise(const Model& model, const PeakValues& places);
@@ -63,7 +68,8 @@ class PeakNoise {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.part_end_, self.parts_over_, self.impacts_, self.values_, self.contacts_);
+    archive(self.part_end_, self.parts_over_, self.impacts_, self.values_, self.contacts_, self.ringing_,
+            self.shallow_);
   }
 
  private:
@@ -91,12 +97,24 @@ class PeakNoise {
       archive(self.separation, self.growing);
     }
   };
+  struct ShallowContact {
+    std::size_t depth = 0;  // the value of its penetration
+    int steps = 0;          // in a row that it was on, less deep than the accuracy
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.steps);
+    }
+  };
   struct EventKind {
     bool begins = false, ends = false;
     int speed = -1;  // index of the field
   };
   void add(double t, std::span<const double> values);
+  void follow_ringing(std::span<const double> values);
   std::span<const Part> seen(std::size_t value) const { return std::span(values_[value].part).first(parts_over_ + 1); }
+  double largest_seen(std::size_t value) const;
+  double by_chance(std::size_t value) const;
+  double by_ringing(std::size_t value) const;
   /// By how much the largest of five parts differs from the fifth.
   double apart(std::size_t value) const;
   /// How far bursts reach beyond the largest of them by chance, and that one, of the parts that are `chosen`.
@@ -108,13 +126,17 @@ class PeakNoise {
   bool repeats(int group) const;
 
   bool active_ = false;
+  double accuracy_;  ///< 0: steps of one size [m]
   double from_, part_length_, part_end_;
   std::size_t parts_over_ = 0;
   std::vector<int> impacts_;  // by group
   std::vector<int> groups_;   // of each value
   std::vector<Value> values_;
-  std::vector<Contact> contacts_;              // by joint
-  std::vector<std::size_t> forces_;            // the value of each joint
+  std::vector<Ringing> ringing_;  // of each value, in a run with error control
+  std::vector<ShallowContact> shallow_;
+  std::vector<int> rests_;           // by group: for how many steps a contact has been on, less deep than the accuracy
+  std::vector<Contact> contacts_;    // by joint
+  std::vector<std::size_t> forces_;  // the value of each joint
   std::vector<std::vector<EventKind>> kinds_;  // by joint and event
 };
 

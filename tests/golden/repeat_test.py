@@ -138,7 +138,7 @@ class Repeat(ProgramTest):
         self.assertNotEqual(found[0]["repeat"]["joints"], other["joints"])
 
     def test_a_regular_model_has_tight_ranges_and_all_digits(self):
-        self.write("m.yaml", HANGING)
+        self.write("m.yaml", HANGING.replace("1 um", "10 nm"))  # the pin rests 160 nm deep
         out, _ = self.freeplay("run", "m.yaml", "--repeat", "4")
         low, high = re.search(r"pin +\S+ N \((\S+) to (\S+) in 4 runs\)", out).groups()
         self.assertLess(float(high) - float(low), 0.01 * float(high), out)
