@@ -9,6 +9,7 @@
 
 #include "assembly/drive_range.h"
 #include "assembly/loop_gap.h"
+#include "assembly/loop_sides.h"
 #include "base/error.h"
 #include "base/index.h"
 #include "model/path_pose.h"
@@ -48,6 +49,14 @@ void refuse_open_path(const ClosedMechanism& mechanism, const ClosedMechanism::R
                 entry.path_location,
                 "if it is, give the bodies a `pose` closer to the wanted one; lengths without a unit are metres");
   }
+}
+
+/// Conditions for which there are no freedoms, as a slide in place of a pin makes one.
+std::string too_many(const ClosedMechanism::Rows& rows) {
+  const Eigen::Index over = rows.matrix.rows() - rows.matrix.cols();
+  if (over <= 0) return {};
+  return fmt::format("; joints, drivers and start values hold {} {} more than the bodies have", over,
+                     over == 1 ? "freedom" : "freedoms");
 }
 
 }  // namespace
@@ -93,7 +102,9 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     const JointElement& joint = model.joints[at(gap->joint)];
     text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
     location = joint.location;
+    text += sides_of_loop(model, gap->joint);
   }
+  text += too_many(rows);
   if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
   text += begin_of_paths(mechanism);
   throw Error(

@@ -19,14 +19,6 @@ double allowance(const JointLayout& layout) {
   return layout.smaller_radius > 0.0 ? layout.clearance + layout.smaller_radius : without_radius * layout.clearance;
 }
 
-/// Whether the ideal joint leaves its second origin no way to move against the first.
-bool holds_origins(const JointElement& element, Space space) {
-  if (element.gear >= 0 || element.is_force) return false;
-  MarkerKinematics marker{};
-  std::ranges::copy(no_rotation, marker.rotation);
-  return ways_of_origin(element.ideal(), element.ideal_layout(), marker, marker) == (space == Space::planar ? 1 : 0);
-}
-
 }  // namespace
 
 std::vector<double> reach(const Model& model) {

@@ -1,5 +1,7 @@
 #include "system/joint_freedom.h"
 
+#include <algorithm>
+
 #include <Eigen/LU>
 
 #include "system/joint_jacobian.h"
@@ -58,6 +60,13 @@ JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, con
   if (factor.rank() == count) blind.resize(count, 0);
   freedom.turns = free_directions(blind.transpose() * about, freedom.turn);
   return freedom;
+}
+
+bool holds_origins(const JointElement& element, Space space) {
+  if (element.gear >= 0 || element.is_force) return false;
+  MarkerKinematics marker{};
+  std::ranges::copy(no_rotation, marker.rotation);
+  return ways_of_origin(element.ideal(), element.ideal_layout(), marker, marker) == (space == Space::planar ? 1 : 0);
 }
 
 }  // namespace freeplay

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 
 #include "component/joint_ref.h"
+#include "model/model.h"
 
 namespace freeplay {
 
@@ -25,5 +26,8 @@ JointFreedom joint_freedom(const JointRef& joint, const JointLayout& layout, con
 /// its thread does, or not; of a planar joint with the one across the plane. Nothing where the joint fails.
 std::optional<int> ways_of_origin(const JointRef& joint, const JointLayout& layout, const MarkerKinematics& a,
                                   const MarkerKinematics& b);
+
+/// Whether the ideal joint leaves its second origin no way to move against the first, as a pin or a ball.
+bool holds_origins(const JointElement& element, Space space);
 
 }  // namespace freeplay
