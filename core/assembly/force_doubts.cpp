@@ -23,6 +23,7 @@ namespace {
 constexpr double odd_free_length = 100.0;  // between the free length of a spring and its length
 constexpr double no_length = 1e-9;         // of a spring [m]
 constexpr double strong_pull = 10.0;       // of a spring without a free length, by the weight of all bodies
+constexpr double most_pulled = 5.0;        // of a spring that pulls so, by its free length
 constexpr double earth = 9.81;             // [m/s^2]
 constexpr double most_damping = 1000.0;    // by that of the limit of swinging
 constexpr double most_stretch = 10.0;      // of a spring by a weight, by the model's size
@@ -148,7 +149,21 @@ class ForceDoubts {
                          "number and its unit",
                          joint.name, free, length),
              joint);
+    } else {
+      judge_stretch(joint, length, free);
     }
+  }
+
+  /// Pulled out from the start, as between frames that are not meant.
+  void judge_stretch(const JointElement& joint, double length, double free) const {
+    const double stiffness = number(joint, "stiffness"), mass = whole_mass(model_).mass;
+    const double pull = stiffness * (length - free);
+    if (!(length > most_pulled * free && pull > strong_pull * earth * mass)) return;
+    doubt_("doubtful-length",
+           fmt::format("'{}' starts pulled to {:.3g} times its free length of {:.4g} m, where it pulls with {:.3g} N, "
+                       "{:.2g} times the weight of all bodies: check its frames, its free length and its stiffness",
+                       joint.name, length / free, free, pull, pull / (earth * mass)),
+           joint);
   }
 
   /// What is longer by its own length before anything pulls.
@@ -165,21 +180,28 @@ class ForceDoubts {
         joint);
   }
 
+  /// What a body sets against an element that acts on it: its mass [kg], or its largest moment about its end [kg m^2].
+  double inertia_at(int marker, bool turns) const {
+    if (body_of(marker) == ground) return 0.0;
+    const Body& body = model_.bodies[at(body_of(marker))];
+    const Vector3 &place = model_.markers[at(marker)].position, &com = body.com;
+    const double arm = std::hypot(place[0] - com[0], place[1] - com[1], place[2] - com[2]);
+    return turns ? std::max({body.inertia[0], body.inertia[4], body.inertia[8]}) + body.mass * arm * arm : body.mass;
+  }
+
   /// Against that which just keeps the heavier of both bodies from swinging on the spring.
   void judge_damping(const JointElement& joint) const {
     const double damping = given_damping(joint), stiffness = number(joint, "stiffness");
-    double mass = 0.0;
-    for (const int marker : {joint.marker_a, joint.marker_b}) {
-      if (body_of(marker) != ground) mass = std::max(mass, model_.bodies[at(body_of(marker))].mass);
-    }
     const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
-    if (turns || !(stiffness > 0.0) || !(damping > most_damping * 2.0 * std::sqrt(stiffness * mass))) return;
-    doubt_("doubtful-value",
-           fmt::format("the damping of '{}' is {:.4g} N*s/m, {:.2g} times what keeps {:.4g} kg on its {:.4g} N/m from "
-                       "swinging: it takes {:.2g} s to follow its spring; check both numbers and their units",
-                       joint.name, damping, damping / (2.0 * std::sqrt(stiffness * mass)), mass, stiffness,
-                       damping / stiffness),
-           joint);
+    const double moved = std::max(inertia_at(joint.marker_a, turns), inertia_at(joint.marker_b, turns));
+    if (!(stiffness > 0.0) || !(damping > most_damping * 2.0 * std::sqrt(stiffness * moved))) return;
+    doubt_(
+        "doubtful-value",
+        fmt::format("the damping of '{}' is {:.4g} {}, {:.2g} times what keeps {:.4g} {} on its {:.4g} {} from "
+                    "swinging: it takes {:.2g} s to follow its spring; check both numbers and their units",
+                    joint.name, damping, turns ? "N*m*s/rad" : "N*s/m", damping / (2.0 * std::sqrt(stiffness * moved)),
+                    moved, turns ? "kg*m^2" : "kg", stiffness, turns ? "N*m/rad" : "N/m", damping / stiffness),
+        joint);
   }
 
   // --- twice -----------------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/element_rates.h"
 #include "assembly/given_damping.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
@@ -21,7 +22,6 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double one_place = 1e-9;       // ends of an element [m]
 constexpr double held = 1e-9;            // motion along an element that rows leave, of a unit vector
 constexpr double by_sound = 1e-6;        // stop of a body [s]: sound crosses 5 mm of steel in it
 constexpr double far_below_step = 0.01;  // of a fixed step, or of the time between rows
@@ -36,7 +36,7 @@ constexpr int looks_of_run = 256;       // at what drivers prescribe
 class Elements {
  public:
   Elements(const System& system, const Evaluation& e, Structure& structure)
-      : system_(system), model_(system.model()), e_(e), structure_(structure) {}
+      : system_(system), model_(system.model()), e_(e), rates_(system, e), structure_(structure) {}
 
   void judge() {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
@@ -64,62 +64,17 @@ class Elements {
     return body_of(marker) == ground ? std::string("ground") : model_.bodies[at(body_of(marker))].name;
   }
 
-  Eigen::Vector3d apart(const JointElement& element) const {
-    const double* a = e_.markers[at(element.marker_a)].position;
-    const double* b = e_.markers[at(element.marker_b)].position;
-    return {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  }
-  std::optional<Eigen::Vector3d> line_of(const JointElement& element) const {
-    const Eigen::Vector3d between = apart(element);
-    if (between.norm() < one_place) return std::nullopt;
-    return between.normalized();
-  }
-
-  /// In the columns of all velocities, from those of the two bodies.
-  MatrixXd spread(const JointElement& element, const double* row) const {
-    MatrixXd rate = MatrixXd::Zero(1, system_.layout().nv());
-    const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
-    for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < width() && bodies[k] != ground; ++c) rate(0, width() * bodies[k] + c) += row[width() * k + c];
-    }
-    return rate;
-  }
-  /// Rate at which the second end goes ahead of the first along a direction, and at which both turn about z.
-  MatrixXd rate_of_ends(const JointElement& element, const Eigen::Vector3d& along, double turn_a, double turn_b) const {
-    double row[12] = {};
-    for (int k = 0; k < 2; ++k) {
-      const int marker = k == 0 ? element.marker_a : element.marker_b;
-      if (body_of(marker) == ground) continue;
-      const Eigen::Vector3d way = k == 0 ? -along : along;
-      const double part[6] = {way[0], way[1], way[2], 0.0, 0.0, k == 0 ? turn_a : turn_b};
-      system_.markers().row(marker, part, e_, row + at(k * width()));
-    }
-    return spread(element, row);
-  }
-
-  /// Rate of what the element acts along, by all velocities: its coordinate, or the distance of its ends.
-  std::optional<MatrixXd> rate_of(int j) const {
-    const JointElement& element = model_.joints[at(j)];
-    if (element.ideal_layout().coordinate == Coordinate::none) {
-      const std::optional<Eigen::Vector3d> line = line_of(element);
-      return line ? std::optional(rate_of_ends(element, *line, 0.0, 0.0)) : std::nullopt;
-    }
-    double row[12] = {}, bias = 0.0;
-    system_.joints().coordinate_row(j, e_, row, bias);
-    return spread(element, row);
-  }
-
   // --- what does nothing -----------------------------------------------------------------------------------------
 
   /// True after a message.
   bool judge_idle(int j) {
     const JointElement& element = model_.joints[at(j)];
-    const std::optional<MatrixXd> rate = rate_of(j);
+    const std::optional<MatrixXd> rate = rates_.of(j);
     for (int i = 0; i < static_cast<int>(model_.joints.size()); ++i) {
       const JointElement& joint = model_.joints[at(i)];
       if (is_force_element(joint) || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
       if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
-      if (!acts_along_line(element) || joint.ideal_layout().pin == 0 || line_of(joint)) continue;
+      if (!acts_along_line(element) || joint.ideal_layout().pin == 0 || rates_.line(joint)) continue;
       const bool first = same_place(joint, element.marker_a), second = same_place(joint, element.marker_b);
       if (first && second ? has_free_length(element) : !first && !second) continue;
       doubt("idle-force",
@@ -145,7 +100,7 @@ class Elements {
   bool same_place(const JointElement& joint, int marker) const {
     const double* a = e_.markers[at(joint.marker_a)].position;
     const double* b = e_.markers[at(marker)].position;
-    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) < one_place;
+    return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]) < ElementRates::one_place;
   }
 
   // What is a line between two points, and not what turns as well.
@@ -196,7 +151,7 @@ class Elements {
     const JointElement& element = model_.joints[at(j)];
     const double damping = given_damping(element);
     if (!(damping > 0.0) || is_doubted(element)) return;
-    const std::optional<MatrixXd> rate = rate_of(j);
+    const std::optional<MatrixXd> rate = rates_.of(j);
     if (!rate) return;
     const VectorXd mass =
         VectorXd::Map(system_.inertia().mass().data(), static_cast<Eigen::Index>(system_.inertia().mass().size()));
@@ -276,8 +231,9 @@ class Elements {
   std::optional<Strands> strands_of(const JointElement& element) const {
     const double first = number(element, "first_radius"), second = number(element, "second_radius");
     const auto strands = element.parameters->values.find("strands");
-    const Eigen::Vector3d line = apart(element);
-    if (!(first > 0.0 && second > 0.0) || strands == element.parameters->values.end() || line.norm() < one_place)
+    const Eigen::Vector3d line = rates_.apart(element);
+    if (!(first > 0.0 && second > 0.0) || strands == element.parameters->values.end() ||
+        line.norm() < ElementRates::one_place)
       return std::nullopt;
     return Strands{first, second, strands->second.word == 0 ? 1.0 : -1.0, line.norm(),
                    Eigen::Vector3d(line[1], -line[0], 0.0) / line.squaredNorm()};
@@ -292,8 +248,8 @@ class Elements {
     const double first = strands->first, second = strands->second, sense = strands->sense;
     // How far both turn against the line of their centres.
     const MatrixXd free = null_space(constraints().topRows(system_.layout().first_driver_row()));
-    const MatrixXd a = rate_of_ends(element, strands->back, 1.0, 0.0) * free,
-                   b = rate_of_ends(element, strands->back, 0.0, 1.0) * free;
+    const MatrixXd a = rates_.of_ends(element, strands->back, 1.0, 0.0) * free,
+                   b = rates_.of_ends(element, strands->back, 0.0, 1.0) * free;
     if (free.cols() == 0 || a.norm() < counts_as_motion || b.norm() < counts_as_motion) return false;
     const double ratio = a.row(0).dot(b.row(0)) / a.squaredNorm(), own = sense * first / second;
     if ((b - ratio * a).norm() > counts_as_motion * b.norm() || std::abs(ratio - own) < same_ratio * std::abs(own))
@@ -312,10 +268,10 @@ class Elements {
   /// rest; nothing where drivers do not prescribe it. Rows of angles alone, which hold as they are all through a run.
   std::optional<std::vector<double>> winding_by_driver(const JointElement& element, const Strands& strands) {
     const MatrixXd free = null_space(constraints().topRows(system_.layout().first_driver_row()));
-    const MatrixXd line = rate_of_ends(element, strands.back, 0.0, 0.0);
+    const MatrixXd line = rates_.of_ends(element, strands.back, 0.0, 0.0);
     if (free.cols() == 0 || (line * free).norm() > counts_as_motion * line.norm()) return std::nullopt;
     const MatrixXd wound =
-        rate_of_ends(element, Eigen::Vector3d::Zero(), strands.first, -strands.sense * strands.second);
+        rates_.of_ends(element, Eigen::Vector3d::Zero(), strands.first, -strands.sense * strands.second);
     MatrixXd rows = MatrixXd::Zero(constraints().rows(), constraints().cols());
     for (Eigen::Index r = 0; r < rows.rows(); ++r) {
       bool turns_alone = true;
@@ -392,6 +348,7 @@ class Elements {
   const System& system_;
   const Model& model_;
   const Evaluation& e_;
+  ElementRates rates_;
   Structure& structure_;
   MatrixXd constraints_;             // once wanted
   std::optional<MatrixXd> motions_;  // that they leave free

@@ -101,7 +101,7 @@ void doubt_idle_turns(
     const JointElement& second = model.joints[at(joints[1])];
     doubt("same-frame",
           fmt::format("joints '{}' and '{}' hold '{}' at one place, '{}', so that its turning moves nothing: is one of "
-                      "them meant at another frame",
+                      "them meant at another frame, or about another axis",
                       model.joints[at(joints[0])].name, second.name, body.name,
                       model.markers[at(turns.marker_of(joints[1], b))].name),
           second);

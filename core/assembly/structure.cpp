@@ -15,6 +15,7 @@
 #include "assembly/doubled_loads.h"
 #include "assembly/doubled_plays.h"
 #include "assembly/force_doubts.h"
+#include "assembly/held_still.h"
 #include "assembly/idle_turns.h"
 #include "assembly/left_free.h"
 #include "assembly/play_bypass.h"
@@ -23,6 +24,7 @@
 #include "assembly/row_space.h"
 #include "assembly/short_links.h"
 #include "assembly/start_overlap.h"
+#include "assembly/weak_springs.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
@@ -69,10 +71,16 @@ class Examination {
     judge_gears();
     if (closed_.layout().nv() > Structure::most_examined) return std::move(structure_);
     doubt_idle_turns(closed_, shut_, doubt_element);
+    doubt_weak_springs(closed_, shut_, doubt_element);
     const MatrixXd open = constraint_matrix(released_.jacobian(), open_);
     judge_plays(open);
     find_undetermined(open);
-    if (!dead) judge_locked(open);
+    if (!dead) {
+      doubt_held_still(released_, open,
+                       [&](const char* id, const std::string& message, const std::string& name, const Location& place) {
+                         doubt(id, message, name, place);
+                       });
+    }
     if (unstable) judge_balance(*unstable);
     if (!dead) find_left_free();
     return std::move(structure_);
@@ -358,60 +366,12 @@ class Examination {
     }
   }
 
-  /// A driver that pushes a joint between bodies which nothing lets move, though no other driver holds them.
-  void judge_locked(const MatrixXd& open) {
-    const bool held = std::ranges::any_of(model_.drivers, [](const Driver& driver) { return prescribes(driver.kind); });
-    if (held || model_.drivers.empty()) return;
-    const MatrixXd free = null_space(open);
-    const int width = released_.layout().body_velocities();
-    const auto moves = [&](BodyId b) {
-      return b != ground && free.cols() > 0 && free.middleRows(width * b, width).norm() > counts_as_motion;
-    };
-    for (const Driver& driver : model_.drivers) {
-      const JointElement& joint = model_.joints[at(driver.joint)];
-      if (moves(body_of(joint.marker_a)) || moves(body_of(joint.marker_b))) continue;
-      if (std::ranges::any_of(joined_to(joint), moves)) {
-        doubt("dead-point",
-              fmt::format("driver '{}' starts joint '{}' at a dead point: it moves nothing until something else moves "
-                          "the mechanism; start beside it",
-                          driver.name, joint.name),
-              driver.name, driver.location);
-        continue;
-      }
-      doubt(
-          "locked",
-          fmt::format("driver '{}' moves nothing: the joints let neither body of '{}' move; leave out what holds them "
-                      "twice, or correct a length that closes a loop of no freedom",
-                      driver.name, joint.name),
-          driver.name, driver.location);
-    }
-  }
-
   /// A start from which rounding decides where the mechanism goes, if it goes. A dead point has said so already.
   void judge_balance(const UnstableStart& unstable) {
     const auto same = [](const StructureDoubt& doubt) { return doubt.id == std::string_view("dead-point"); };
     if (std::ranges::any_of(structure_.doubts, same)) return;
     const Body& body = model_.bodies[at(unstable.body)];
     doubt("unstable-start", fmt::format("'{}' {}", body.name, words_of(unstable)), body.name, body.location);
-  }
-
-  /// Bodies that hang on those of a joint without ground between them.
-  std::vector<BodyId> joined_to(const JointElement& joint) const {
-    std::vector<BodyId> found;
-    const auto reach = [&](BodyId body) {
-      if (body == ground || std::ranges::count(found, body) > 0) return;
-      found.push_back(body);
-    };
-    reach(body_of(joint.marker_a));
-    reach(body_of(joint.marker_b));
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      for (const JointElement& other : model_.joints) {
-        const BodyId a = body_of(other.marker_a), b = body_of(other.marker_b);
-        if (a == found[i]) reach(b);
-        if (b == found[i]) reach(a);
-      }
-    }
-    return found;
   }
 
   void find_left_free() {

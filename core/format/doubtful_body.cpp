@@ -103,12 +103,18 @@ std::vector<double> sorted_reaches(const std::vector<FrameOutline>& outlines, co
   return reaches;
 }
 
-/// Does a place say a unit of length? That of an angle beside it says nothing of its own.
-bool place_says_unit(const CheckedValue& place) {
-  if (!place.node().is_map()) return says_unit(place);
+/// Does a place, which is `at`, say a unit of length beside the largest of its numbers? That of an angle, or of
+/// another direction, says nothing of it.
+bool place_says_unit(const CheckedValue& place, const Vector3& at) {
+  const auto by_size = [&](std::size_t a, std::size_t b) { return std::abs(at[a]) < std::abs(at[b]); };
+  const std::size_t largest = std::max({std::size_t{0}, std::size_t{1}, std::size_t{2}}, by_size);
+  const auto vector_says = [&](const CheckedValue& vector) {
+    return says_unit(vector.node().is_list() && vector.node().items.size() > largest ? vector.item(largest) : vector);
+  };
+  if (!place.node().is_map()) return vector_says(place);
   return std::ranges::any_of(place.node().entries, [&](const Node::Entry& entry) {
     const CheckedValue part(place.reading(), *entry.value, entry.key, place.path());
-    if (entry.key->text == "position") return says_unit(part);
+    if (entry.key->text == "position") return vector_says(part);
     return entry.key->text == "polar" && !entry.value->items.empty() && says_unit(part.item(0));
   });
 }
@@ -197,14 +203,28 @@ class BodyDoubts {
     const double own_reach = is_length(outlines_[i], gyration_[i], body(i).mass) ? outlines_[i].reach : 0.0;
     const double around = std::max(own_reach, scale());
     if (!(around > 0.0)) return judge_lone_inertia(i);
-    if (gyration_[i] <= body_limit::gyration * around) return false;
+    if (gyration_[i] <= body_limit::gyration * around) return judge_airy_body(i);
     const double disc = 2.0 * std::numbers::pi * gyration_[i] * gyration_[i];
-    if (body(i).mass > body_limit::sheet * disc && gyration_[i] <= body_limit::any_gyration * around) return false;
+    if (body(i).mass > body_limit::sheet * disc && gyration_[i] <= body_limit::any_gyration * around)
+      return judge_airy_body(i);
     const bool own = own_reach >= around;
     warn(i, "inertia", "doubtful-inertia",
          fmt::format("{}, but {} {:.4g} m: check the number{}", moment_words(i),
                      own ? "its frames reach" : "the lengths of the mechanism are about", around,
                      is_foreign(i) ? "" : " and write its unit, as in 'kg*mm^2'"));
+    return true;
+  }
+
+  /// Lighter than the air that it would displace, though none of its frames is so far out.
+  bool judge_airy_body(std::size_t i) const {
+    const double k = gyration_[i];
+    if (k <= body_limit::large || body(i).mass >= body_limit::airy * k * k * k) return false;
+    if (outlines_[i].reach >= body_limit::past_reach * k || distance(body(i).com, {}) >= body_limit::past_reach * k)
+      return false;
+    warn(i, "inertia", "doubtful-inertia",
+         fmt::format("{}, farther out than any of its frames, and a ball of that size would be as light as air: check "
+                     "mass and inertia{}",
+                     moment_words(i), is_foreign(i) ? "" : " and write their units, as in 'kg*mm^2'"));
     return true;
   }
 
@@ -231,17 +251,18 @@ class BodyDoubts {
     }
     const double own = distance(outline.farthest_place, {});
     if (i && (!value || distance(body(*i).com, {}) > own)) value = key_of(*i, "com");
-    if (!value || place_says_unit(*value)) return false;
+    if (!value) return false;
+    const bool of_com = i && value->key() == "com";
+    if (place_says_unit(*value, of_com ? body(*i).com : outline.farthest_place)) return false;
     const bool foreign = i && is_foreign(*i);
-    const double number = i && value->key() == "com" ? distance(body(*i).com, {}) : own;
+    const double number = of_com ? distance(body(*i).com, {}) : own;
     if (!doubted_.insert(&value->node()).second) return true;
-    value->warn(
-        "doubtful-length",
-        fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
-                    "m: {}",
-                    value->key() == "com" ? body(*i).name + "/com" : outline.farthest, number, scale_of_others(),
-                    foreign ? "robot files are in metres"
-                            : fmt::format("write the unit after the numbers, as in '{:.4g} mm'", number)));
+    value->warn("doubtful-length",
+                fmt::format("'{}' is {:.4g} m from the origin of its body, but the lengths around it are about {:.4g} "
+                            "m: {}",
+                            of_com ? body(*i).name + "/com" : outline.farthest, number, scale_of_others(),
+                            foreign ? "robot files are in metres"
+                                    : fmt::format("write the unit after the numbers, as in '{:.4g} mm'", number)));
     return true;
   }
 
@@ -287,11 +308,12 @@ class BodyDoubts {
   bool says_length_unit(std::size_t i) const {
     const auto frame = draft_.frames.find(outlines_[i].farthest);
     if (frame != draft_.frames.end() && frame->second.value != nullptr &&
-        place_says_unit(CheckedValue(*frame->second.reading, *frame->second.value, frame->second.key, frame->first))) {
+        place_says_unit(CheckedValue(*frame->second.reading, *frame->second.value, frame->second.key, frame->first),
+                        outlines_[i].farthest_place)) {
       return true;
     }
     const auto com = key_of(i, "com");
-    return com && place_says_unit(*com);
+    return com && place_says_unit(*com, body(i).com);
   }
 
   /// Is it dense against the other bodies, and written without a unit?
@@ -301,24 +323,27 @@ class BodyDoubts {
     return value && !names_a_unit(*value);
   }
 
-  /// Of a rotor on one pin, which may be a little unbalanced.
+  /// Of a rotor on one pin, which may be a little unbalanced, or a link with all of its joints far away.
   bool judge_lone_com(std::size_t i) const {
+    if (outlines_[i].places.empty()) return false;
     const double outside = outlines_[i].outside(body(i).com);
     if (!(scale() > 0.0) || !(outside > body_limit::lone_com * scale())) return false;
-    if (outside <= body_limit::lone_com_gyration * gyration_[i]) return false;
+    const double gyrations =
+        outlines_[i].places.size() > 1 ? body_limit::linked_com_gyration : body_limit::lone_com_gyration;
+    if (outside <= gyrations * gyration_[i]) return false;
     const auto value = key_of(i, "com");
-    if (!value || is_foreign(i) || place_says_unit(*value)) return false;
-    warn(
-        i, "com", "doubtful-length",
-        fmt::format("the centre of mass of '{}' is {:.4g} m away from its joint where the lengths of the mechanism are "
-                    "about {:.3g} m: write the unit after the number, as in 'mm'",
-                    body(i).name, outside, scale()));
+    if (!value || is_foreign(i) || place_says_unit(*value, body(i).com)) return false;
+    warn(i, "com", "doubtful-length",
+         fmt::format(
+             "the centre of mass of '{}' is {:.4g} m away from its joints where the lengths of the mechanism are "
+             "about {:.3g} m: write the unit after the number, as in 'mm'",
+             body(i).name, outside, scale()));
     return true;
   }
 
   bool judge_com(std::size_t i) const {
     const FrameOutline& outline = outlines_[i];
-    if (outline.places.size() == 1) return judge_lone_com(i);
+    if (judge_lone_com(i)) return true;
     const double extent = outline.extent(), outside = outline.outside(body(i).com), k = gyration_[i];
     if (outline.places.size() < 2 || !(extent > 1e-12) || !(k > 0.0)) return false;
     if (outside <= body_limit::com_outside * extent || outside <= body_limit::com_outside_gyration * k) return false;

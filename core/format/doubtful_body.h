@@ -14,6 +14,9 @@ inline constexpr double gyration = 10.0, sheet = 0.5, any_gyration = 300.0;
 /// Mass on the disc with the radius of gyration of a rotor, where nothing of the model has a length [kg/m^2], as foils
 /// of solar sails have 0.005; and that radius [m], as bodies that slide alone have any inertia.
 inline constexpr double foil = 1e-4, lone_gyration = 10.0;
+/// Mass by the cube of the radius of gyration [kg/m^3], of a body that reaches less far than `past_reach` of that
+/// radius, which is longer than `large` [m]: air has 1.2, a ball of it would be lighter than a balloon.
+inline constexpr double airy = 3.0, past_reach = 1.0 / 1.5, large = 1.0;
 /// A body with a single frame is at least as long as its radius of gyration if its centre of mass is as far from that
 /// frame as this part of it: nearer, it is an unbalanced rotor, and the distance no length of the mechanism.
 inline constexpr double arm = 0.3;
@@ -34,8 +37,8 @@ inline constexpr double thinnest = 1e-5, thin_reach = 5.0, thin_mass = 1e-4, thr
 inline constexpr double com_outside = 0.5, com_outside_gyration = 2.0, lump = 4.0, far = 3.0;
 inline constexpr double least_of_box = 0.15, most_of_box = 0.6;
 /// Distance of the centre of mass of a body on one joint from it, without a unit: in lengths of the mechanism, of which
-/// a load on a rope has 30, and in radii of gyration.
-inline constexpr double lone_com = 20.0, lone_com_gyration = 300.0;
+/// a load on a rope has 30, and in radii of gyration; of one with several frames.
+inline constexpr double lone_com = 20.0, lone_com_gyration = 300.0, linked_com_gyration = 30.0;
 /// How many times smaller the moment across the line of the frames is than that about it, in space.
 inline constexpr double axis_ratio = 12.0;
 }  // namespace body_limit

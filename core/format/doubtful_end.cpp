@@ -16,7 +16,7 @@ constexpr std::size_t most_counted = 200;  // drivers and forces whose periods a
 constexpr int looks = 211;                 // at a driver in the run: a prime, so that few periods are in step with it
 constexpr int fewest_reversals = 16;       // between them, of what swings all the time
 constexpr double most_steps = 1e9, most_bare_steps = 1e7, many_steps = 1e6;
-constexpr double many_turns = 1000.0, most_turns = 3000.0;
+constexpr double many_turns = 1000.0, most_turns = 1500.0;
 
 struct Turns {
   const Driver* driver = nullptr;

@@ -103,7 +103,7 @@ class MotionDoubts {
                                 written->path(), low, high));
     } else if (bare && doubt_pins(driver, fastest, *written, speeds ? "unit: rpm" : "unit: deg")) {
       return;
-    } else if (bare && fastest > bare_limit::angular_speed) {
+    } else if (bare && fastest >= bare_limit::angular_speed) {
       written->warn("doubtful-speed",
                     fmt::format("'{}' comes to {:.6g} rad/s, that is {:.0f} rpm: write 'unit: {}' if that is meant, "
                                 "else 'unit: {}'",

@@ -241,7 +241,7 @@ bool doubt_direction(const CheckedValue& written, double radians) {
 }
 
 void doubt_angular_speed(const CheckedValue& written, double speed) {
-  if (std::abs(speed) <= bare_limit::angular_speed || names_a_unit(written)) return;
+  if (std::abs(speed) < bare_limit::angular_speed || names_a_unit(written)) return;
   written.warn("doubtful-speed", fmt::format("'{0}' is {1:.6g} rad/s, that is {2:.0f} rpm: write '{1:.6g} rpm' if "
                                              "revolutions per minute are meant, else '{1:.6g} rad/s'",
                                              written.path(), speed, std::abs(speed) * 30.0 / pi));

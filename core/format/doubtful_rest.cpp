@@ -17,6 +17,7 @@ constexpr double later[] = {10.0, 1e3, 1e6};  // runs in which what rests may be
 constexpr double inside = 1.0 - 1e-9;         // part of the run: what begins at its very end does so after it
 constexpr double ramp_beyond = 20.0;          // the end of a ramp that begins in the run, in runs
 constexpr double ramp_within = 2000.0;        // and that is looked for: a second in milliseconds is a thousand
+constexpr double late_runs = 100.0;           // after what changes in the run
 constexpr double most_of_ramp = 0.05;         // of its change, in the run
 constexpr std::size_t most_corners = 64;      // of a motion that is a ramp
 
@@ -111,7 +112,16 @@ class RestDoubts {
   void doubt_ramps(std::span<const Expression> formulas, const CheckedValue& written) const {
     if (says_time(written)) return;
     for (const Expression& formula : formulas) {
-      const double end = formula.depends_on_time() ? end_of_ramp(formula) : unbounded;
+      if (!formula.depends_on_time()) continue;
+      if (const double late = late_change(formula); late < unbounded) {
+        written.warn(
+            "doubtful-time",
+            fmt::format("'{}' changes in the run, which ends at {:.4g} s, and again at {:.4g} s: write the unit "
+                        "after its times, as in 'ms', or check the end of the run",
+                        written.path(), settings_.end, late));
+        return;
+      }
+      const double end = end_of_ramp(formula);
       if (!(end < unbounded)) continue;
       written.warn("doubtful-time",
                    fmt::format("'{}' has only begun to change when the run ends at {:.4g} s, and goes on to {:.4g} s: "
@@ -119,6 +129,29 @@ class RestDoubts {
                                written.path(), settings_.end, end));
       return;
     }
+  }
+
+  /// A polynomial of low degree that has one value at three instants is that value.
+  static bool rests_between(const Expression& formula, double from, double until) {
+    Jet first, jet;
+    EvaluationFailure failure;
+    if (!formula.evaluate(from, first, failure)) return false;
+    return std::ranges::all_of(std::initializer_list{0.23, 0.5, 0.77}, [&](double part) {
+      return formula.evaluate(from + part * (until - from), jet, failure) && jet.value == first.value;
+    });
+  }
+
+  /// The first change long after the run of what has some within it and is at rest in between; infinite without.
+  double late_change(const Expression& formula) const {
+    const double from = settings_.start, until = from + ramp_within * span();
+    const Outline outline = formula.outline(from, until);
+    if (outline.corners.empty() || outline.corners.size() > most_corners) return unbounded;
+    for (std::size_t i = 1; i < outline.corners.size(); ++i) {
+      const double time = outline.corners[i].time;
+      if (outline.corners[i - 1].time >= from + inside * span()) return unbounded;
+      if (time > from + late_runs * span() && rests_between(formula, outline.corners[i - 1].time, time)) return time;
+    }
+    return unbounded;
   }
 
   /// When a motion comes gently to rest that begins in the run and has hardly changed at its end; else infinite.

@@ -10,6 +10,7 @@
 #include "results/load_judgement.h"
 #include "results/path_judgement.h"
 #include "results/singular_judgement.h"
+#include "results/touch_judgement.h"
 #include "run/lasting_blows.h"
 #include "run/motion_period.h"
 #include "run/slowest_turn.h"
@@ -424,6 +425,7 @@ void judge(const RunRecord& record, Verdict& verdict) {
   judge_constraints(record, verdict);
   judge_redundancy(record, verdict);
   judge_contacts(record, verdict);
+  judge_touch(record, verdict);
   judge_steps_per_impact(record, verdict);
   judge_reach(record, verdict);
   judge_paths(record, verdict);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/index.h"
+#include "model/force_element.h"
 #include "model/whole_mass.h"
 
 namespace freeplay {
@@ -14,6 +15,8 @@ namespace {
 
 // As most_of_load: springs, dampers and friction answer motions, impacts among them.
 constexpr double most_of_element = 3e5;  // [m/s^2]
+// Joints pass on what presses in a clamp, many times the weight of its parts.
+constexpr double most_of_joint = 5e5;    // [m/s^2]
 constexpr double fastest_slide = 100.0;  // [m/s], on ground: catapults of ships
 constexpr double fastest_body = 200.0;   // [m/s]
 constexpr double fastest_mean = 1000.0;  // [m/s], of all masses: rings of steel burst at 400, carbon fibre reaches it
@@ -27,6 +30,7 @@ class LoadJudge {
     if (!(all_.mass > 0.0) || !(size_ > 0.0)) return;
     look_at_forces();
     look_at_drivers();
+    if (!(worst_.excess > 1.0)) look_at_joints();  // which only pass on what others press with
     if (worst_.excess > 1.0) {
       verdict.add(
           {.id = "load-size",
@@ -83,6 +87,15 @@ class LoadJudge {
       const double effort = largest(record_.statistics.largest().places().effort(static_cast<int>(d)));
       const bool turns = driver.kind == DriverKind::torque;
       look_at(turns ? 0.0 : effort, turns ? effort : 0.0, most_of_load, fmt::format("driver '{}'", driver.name));
+    }
+  }
+
+  void look_at_joints() {
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      if (is_force_element(joint) || joint.has_play || joint.gear >= 0) continue;
+      look_at(largest(record_.statistics.largest().places().force(j)), 0.0, most_of_joint,
+              fmt::format("joint '{}'", joint.name));
     }
   }
 

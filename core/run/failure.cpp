@@ -16,8 +16,8 @@
 
 namespace freeplay {
 namespace {
-constexpr double singular = 1e-4;       // regularity
-constexpr double fast_for_all = 100.0;  // speed of all masses at the energy of motion [m/s]
+constexpr double singular = 1e-4;      // regularity
+constexpr double fast_for_all = 50.0;  // speed of all masses at the energy of motion [m/s]
 constexpr double most_of_energy = 0.5;
 }  // namespace
 
@@ -189,7 +189,10 @@ std::string RunFailure::why_so_small(double dt, double smallest, int limiting_jo
 }
 
 std::string RunFailure::likely_cause_at(double t, double dt, int joint) const {
-  const double mass = whole_mass(run_.model).mass, energy = run_.system.inertia().kinetic_energy(run_.e_accepted->v);
+  // A contact that is pressed to the core holds what was motion before.
+  const double mass = whole_mass(run_.model).mass;
+  double energy = run_.system.inertia().kinetic_energy(run_.e_accepted->v);
+  for (const double stored : run_.e_accepted->potential) energy += std::max(stored, 0.0);
   const double speed = std::sqrt(2.0 * energy / mass);
   std::string worker;
   if (speed > fast_for_all && is_on_ground(run_.model)) worker = hardest_worker(most_of_energy * energy);

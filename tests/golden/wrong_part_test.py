@@ -1,0 +1,163 @@
+"""Lengths, parts and springs that make another mechanism than is meant: what is wrong is named, and what is meant is not doubted."""
+import json
+import unittest
+
+from program import ProgramTest
+
+STRUT = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {up: {position: [0, 0], angle: 90 deg}, road: {position: [0.42, 0], angle: 90 deg}}}
+  body: {mass: 320, inertia: 90, com: [0, 0.55], frames: {up: {position: [0, 0], angle: 90 deg}, pivot: [0, 0.35], top: [0.3, 0.75]}}
+  arm: {mass: 42, inertia: 1.6, com: [0.36, 0], frames: {hub: [0.42, 0], seat: [0.3, 0.03]}, pose: {position: [0, 0.35], angle: -8 deg}}
+  road: {mass: 1, inertia: 0.01, frames: {up: {position: [0, 0], angle: 90 deg}}}
+joints:
+  heave: {type: prismatic, between: [ground/up, body/up]}
+  pivot: {type: revolute, between: [body/pivot, arm]}
+  track: {type: prismatic, between: [ground/road, road/up]}
+forces:
+  coil: {type: spring-damper, between: [body/top, arm/seat], stiffness: 32e3, damping: 2200, free_length: 0.56}
+  tyre: {type: spring-damper, between: [road, arm/hub], stiffness: 190e3, damping: 250, free_length: 0.31}
+drivers: {bump: {joint: track, kind: position, value: "0.05*(smooth(t, 0.1, 0.2) - smooth(t, 0.3, 0.4))"}}
+simulation: {end: 0.5, accuracy: 1e-6}
+"""
+LAMP = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {arm: {mass: 1.2, inertia: 0.03, com: [0.25, 0], frames: {end: [0.5, 0]}}, head: {mass: 0.4, inertia: 1e-3}}
+joints: {hinge: {type: revolute, between: [ground, arm]}, neck: {type: revolute, between: [arm/end, head]}}
+forces:
+  spring: {type: spring-damper, kind: rotational, between: [ground, arm], stiffness: 20 N*m/rad, damping: 0.5}
+  grip: {type: spring-damper, kind: rotational, between: [arm/end, head], stiffness: 2 N*m/rad, damping: 0.01}
+initial: {joints: {hinge: 0, neck: 0}}
+simulation: {end: 0.5, accuracy: 1e-6}
+"""
+HOIST = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {m: [0.6, 8], d: [0, 8], well: {position: [-0.15, 0], angle: 90 deg}}}
+  rotor: {mass: 25, inertia: 0.02}
+  drum: {mass: 90, inertia: 1.1}
+  cage: {mass: 600, inertia: 150, frames: {up: {position: [0, 0], angle: 90 deg}}}
+joints:
+  motor_shaft: {type: revolute, between: [ground/m, rotor]}
+  drum_shaft: {type: revolute, between: [ground/d, drum]}
+  well: {type: prismatic, between: [ground/well, cage/up]}
+  reducer: {type: gear, of: [motor_shaft, drum_shaft], ratio: -0.05}
+  rope: {type: gear, of: [drum_shaft, well], ratio: -0.15}
+drivers: {motor: {joint: motor_shaft, kind: torque, value: "55*(smooth(t, 0, 0.2) - smooth(t, 1.5, 1.6))"}}
+initial: {joints: {well: 0.5}}
+simulation: {end: 2, accuracy: 1e-6}
+"""
+FORCED = HOIST.replace(HOIST[HOIST.index("drivers:"):HOIST.index("initial:")],
+                       'forces: {motor: {type: torque, on: rotor, value: "55 N*m*(1 - joint.motor_shaft.speed/(150 rad/s))"}}\n')
+FLYWHEEL = """freeplay: 1
+bodies: {wheel: {mass: 2, inertia: 0.1}, box: {mass: 1, inertia: 0.1, com: [0.2, 0]}}
+joints: {axle: {type: revolute, between: [ground, wheel]}, bolts: {type: fixed, between: [ground, box]}}
+initial: {speeds: {axle: 10}}
+simulation: {end: 1, accuracy: 1 um}
+"""
+CRUSHER = """freeplay: 1
+bodies:
+  shaft: {mass: 60, inertia: 0.4, frames: {pin: [12 mm, 0]}}
+  jaw: {mass: 300, inertia: 40, com: [0, -0.5], frames: {toe: [0, -1.1]}}
+  toggle: {mass: 30, inertia: 0.5, com: [0.195, 0], frames: {end: [0.39, 0]}}
+frames: {ground/seat: [-0.32, -1.2]}
+joints:
+  main: {type: revolute, between: [ground, shaft]}
+  pitman: {type: revolute, between: [shaft/pin, jaw]}
+  front: {type: revolute, between: [jaw/toe, toggle/end]}
+  rear: {type: revolute, between: [ground/seat, toggle]}
+drivers: {motor: {joint: main, kind: velocity, value: 26}}
+simulation: {end: 0.2, accuracy: 1 um}
+"""
+SCREEN = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {l: [-0.8, 0], r: [0.8, 0]}}
+  deck: {mass: 260, inertia: 60, frames: {l: [-0.8, 0], r: [0.8, 0], shaft: [0, 0.1]}, pose: {position: [0, 0.2]}}
+  rotor: {mass: 12, inertia: 0.1, com: [6 mm, 0]}
+joints: {shaft: {type: revolute, between: [deck/shaft, rotor]}}
+forces:
+  left: {type: spring-damper, between: [ground/l, deck/l], stiffness: 60e3, damping: 300, free_length: 0.222}
+  right: {type: spring-damper, between: [ground/r, deck/r], stiffness: 60e3, damping: 300, free_length: 0.222}
+drivers: {motor: {joint: shaft, kind: velocity, value: "100*smooth(t, 0, 1)"}}
+simulation: {end: 2, accuracy: 1 um}
+"""
+LINK = "jaw: {mass: 300, inertia: 40, com: [0, -0.5]"
+SLIPS = [
+    (STRUT, "stiffness: 32e3", "stiffness: 32", "doubtful-value", "'coil' is so weak that it would have to give by 138 m"),
+    (LAMP, "stiffness: 20 N*m/rad", "stiffness: 0.02 N*m/rad", "doubtful-value", "'spring' is so weak that it would have to give by"),
+    (HOIST, "inertia: 0.02", "inertia: 200", "doubtful-inertia", "a ball of that size would be as light as air"),
+    (HOIST, "smooth(t, 1.5, 1.6)", "smooth(t, 1500, 1600)", "doubtful-time", "and again at 1500 s"),
+    (FORCED, "  rope:", "  direct: {type: gear, of: [motor_shaft, drum_shaft], ratio: 0.1}\n  rope:", "locked", "nothing can move"),
+    (CRUSHER, LINK, LINK.replace("[0, -0.5]", "[0.01 m, -50]"), "doubtful-length", "write the unit after the numbers, as in '50 mm'"),
+    (CRUSHER, "shaft: {mass: 60,", "shaft: {mass: 60, com: [30, 0],", "doubtful-length", "the centre of mass of 'shaft' is 29.99 m away from its joints"),
+    (SCREEN, "[ground/r, deck/r]", "[ground/l, deck/r]", "doubtful-length", "'right' starts pulled to 7.26 times its free length"),
+    (SCREEN, "100*smooth", "1000*smooth", "doubtful-speed", "that is 9549 rpm"),
+]
+OPEN = [
+    (CRUSHER, "[12 mm, 0]", "[12, 0]", "that of 'shaft' is longer than the others together"),
+    (CRUSHER, "[0.39, 0]", "[0.039, 0]", "the sides of its loop are 'shaft' 0.012 m, 'jaw' 1.1 m, 'toggle' 0.039 m and ground 1.242 m"),
+    (CRUSHER, "front: {type: revolute, between: [jaw/toe, toggle/end]}\n  rear: {type: revolute",
+     "front: {type: fixed, between: [jaw/toe, toggle/end]}\n  rear: {type: fixed", "hold 1 freedom more than the bodies have"),
+]
+# A bearing that rests 60 nm deep under its load.
+ROBOT = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  upper: {mass: 6, inertia: 0.06, com: [0.17, 0], frames: {elbow: [0.35, 0]}}
+  fore: {mass: 3.5, inertia: 0.035, com: [0.12, 0], pose: {position: [0.29, -0.18], angle: 58 deg}}
+joints:
+  shoulder: {type: revolute, between: [ground, upper]}
+  elbow:
+    type: revolute
+    bearing: upper/elbow
+    journal: fore
+    clearance: {bearing_radius: 0.015, radial_clearance: 2e-5, length: 0.03, material: {E: 210e9, nu: 0.3}, contact: {law: johnson, damping: flores, restitution: 0.6}, initial: loaded}
+drivers:
+  one: {joint: shoulder, kind: angle, value: "-0.6 + 0.3*sin(2*pi*t)"}
+  two: {joint: elbow, kind: angle, value: "1.6 + 0.3*sin(2*pi*t)"}
+simulation: {end: 1, accuracy: %s}
+"""
+
+
+class WrongPart(ProgramTest):
+    def messages(self, text, code=0):
+        out, _ = self.freeplay("validate", self.write("m.yaml", text), "--json", code=code)
+        return [(m["id"], m["message"]) for m in json.loads(out)["messages"]]
+
+    def test_each_is_named_once(self):
+        for model, old, new, wanted, words in SLIPS:
+            with self.subTest(new):
+                self.assertEqual(1, model.count(old))
+                found = self.messages(model.replace(old, new))
+                self.assertEqual([wanted], [one for one, _ in found if one == wanted], found)
+                self.assertTrue(any(words in message for _, message in found), found)
+
+    def test_a_loop_that_does_not_close_shows_its_sides_and_what_is_held_too_much(self):
+        for model, old, new, words in OPEN:
+            with self.subTest(new):
+                self.assertEqual(1, model.count(old))
+                found = [message for one, message in self.messages(model.replace(old, new), code=3) if one == "assembly-failed"]
+                self.assertIn(words, "".join(found))
+
+    def test_what_is_meant_is_not_doubted(self):
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN):
+            with self.subTest(text[:300]):
+                self.assertEqual([], self.messages(text))
+
+    def noise_and_peak(self, accuracy):
+        self.freeplay("run", self.write("m.yaml", ROBOT % accuracy), "--out", "r", "--force")
+        summary = json.loads(self.read("r", "summary.json"))
+        return summary["noise"]["joints"]["elbow"]["max_force"], summary["joints"]["elbow"]["max_force"]
+
+    def test_what_a_bearing_rings_with_under_a_coarse_accuracy_is_noise_of_its_force(self):
+        fine_noise, fine = self.noise_and_peak("10 nm")
+        noise, coarse = self.noise_and_peak("10 um")
+        self.assertLess(fine_noise, 1e-3 * fine)
+        self.assertGreater(abs(coarse - fine), 1e-3 * fine)
+        self.assertGreater(2.0 * noise, abs(coarse - fine))
+
+
+if __name__ == "__main__":
+    unittest.main()
