@@ -41,7 +41,8 @@ class ExpressionNames : protected ExpressionOperands {
     fail_if_not_finite_word(begin, begin);
     const bool called = peek() == '(';
     if (is_function(name)) {
-      fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name));
+      fail("bad-expression", begin, end, fmt::format("'{}' needs its arguments in parentheses", name), {},
+           name == "min" && !called ? "of revolutions per minute write 'rpm', of a minute '60 s'" : "");
     }
     if (is_unit_name(name) && !called) {
       const bool holds = variables_ != nullptr && variables_->plain();

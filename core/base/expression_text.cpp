@@ -9,6 +9,7 @@
 #include "base/expression_error.h"
 #include "base/text.h"
 #include "base/token.h"
+#include "base/unit.h"
 
 namespace freeplay {
 
@@ -57,6 +58,13 @@ void ExpressionText::fail_at_rest() {
   if (c == ',') fail_at_comma();
   const std::size_t end = std::max(word_end(text_, begin), number_end(text_, begin));
   const bool operand_missing = c == ')' || c == '*' || c == '/' || c == '^';
+  const std::size_t after = skip_blanks(text_, end);
+  const bool called = after < text_.size() && text_[after] == '(';
+  if (std::string hint = hint_for_foreign_unit(text_.substr(begin, end - begin)); !hint.empty() && !called)
+    fail("bad-unit", begin, end, fmt::format("'{}' is not a unit", text_.substr(begin, end - begin)), {},
+         std::move(hint));
+  if (text_.substr(begin).starts_with("1/min"))
+    fail("bad-unit", begin, begin + 5, "'1/min' is not a unit", {}, "write 'rpm'");
   if (!operand_missing && (end > begin || c == '$' || c == '(')) {
     fail("bad-expression", begin, end, "an operator is missing here", {}, "write '*' to multiply");
   }

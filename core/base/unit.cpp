@@ -74,6 +74,17 @@ constexpr NamedUnit units[] = {
     {"kW", 1e3, dimension::power},
 };
 
+struct ForeignUnit {
+  std::string_view name, amount;
+};
+
+// Conversions by NIST Special Publication 811, appendix B.
+constexpr ForeignUnit foreign_units[] = {
+    {"bar", "100 kPa"},   {"mbar", "100 Pa"},  {"atm", "101325 Pa"}, {"psi", "6894.757 Pa"}, {"daN", "10 N"},
+    {"kgf", "9.80665 N"}, {"kp", "9.80665 N"}, {"hp", "745.6999 W"}, {"PS", "735.4988 W"},   {"MW", "1000 kW"},
+    {"min", "60 s"},      {"h", "3600 s"},     {"cal", "4.1868 J"},  {"oz", "28.34952 g"},
+};
+
 struct NamedDimension {
   Dimension dimension;
   const char* name;
@@ -209,7 +220,8 @@ class UnitReader {
   }
 
   [[noreturn]] void refuse(std::string_view name, std::size_t begin) const {
-    if (name == "Hz") fail(begin, position_, "'Hz' is not a unit", {}, "write 'rev/s' or 'rad/s'");
+    if (std::string hint = hint_for_foreign_unit(name); !hint.empty())
+      fail(begin, position_, fmt::format("'{}' is not a unit", name), {}, std::move(hint));
     if (name == "\u00b0") fail(begin, position_, fmt::format("'{}' is not a unit", name), "deg");
     fail(begin, position_, fmt::format("'{}' is not a unit", name), suggestion(name, unit_names()).value_or(""));
   }
@@ -281,6 +293,13 @@ Unit parse_unit_at(std::string_view text, std::size_t& position) {
 }
 
 bool is_unit_name(std::string_view word) { return find_unit(word) != nullptr; }
+
+std::string hint_for_foreign_unit(std::string_view word) {
+  if (word == "Hz") return "write 'rev/s' or 'rad/s'";
+  const auto* unit = std::ranges::find(foreign_units, word, &ForeignUnit::name);
+  return unit == std::end(foreign_units) ? std::string()
+                                         : fmt::format("write '{}' for each '{}'", unit->amount, unit->name);
+}
 
 std::vector<std::string> unit_names() {
   std::vector<std::string> names;

@@ -66,6 +66,9 @@ Unit parse_unit_at(std::string_view text, std::size_t& position);
 
 /// True if `word` is one of the unit names.
 bool is_unit_name(std::string_view word);
+/// What to write in place of a unit that is in use elsewhere, as "write '100 kPa' for each 'bar'"; empty for other
+/// words.
+std::string hint_for_foreign_unit(std::string_view word);
 
 /// All unit names, in the order of the manual.
 std::vector<std::string> unit_names();

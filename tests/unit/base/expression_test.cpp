@@ -222,6 +222,18 @@ TEST(Expression, RefusesUnknownUnits) {
   EXPECT_EQ(error_of("(2 m) m").id, "bad-unit");
 }
 
+TEST(Expression, SaysWhatToWriteForUnitsThatAreInUseElsewhere) {
+  for (const auto& [text, hint] :
+       {std::pair("7 bar", "write '100 kPa' for each 'bar'"), std::pair("2 hp", "write '745.6999 W' for each 'hp'"),
+        std::pair("1 min", "write '60 s' for each 'min'"), std::pair("180 1/min", "write 'rpm'")}) {
+    EXPECT_EQ(error_of(text).id, "bad-unit") << text;
+    EXPECT_EQ(error_of(text).hint, hint);
+    EXPECT_EQ(error_of(text).suggestion, "");
+  }
+  EXPECT_EQ(error_of("180 rev/min").hint, "of revolutions per minute write 'rpm', of a minute '60 s'");
+  EXPECT_EQ(error_of("2 min(1, 2)").id, "bad-expression");
+}
+
 TEST(Expression, PointsIntoTheTextInCharacters) {
   EXPECT_EQ(error_of("5 \u00b5m + foo").offset, 7);
   EXPECT_EQ(error_of("6.75e-3*(1 + $l1").offset, 8);
