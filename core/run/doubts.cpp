@@ -17,7 +17,6 @@ namespace freeplay {
 namespace {
 constexpr double fewest_steps_in_period = 10.0;  // of a motion that carries energy
 constexpr double least_energy = 1e-6;            // by masses lifted by the model's size, or crossing it in the run
-constexpr double most_damped = 15.0;             // force of a contact by that of its stiffness
 
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
 bool in_a_loop(const Model& model, int without) {
@@ -216,7 +215,7 @@ void RunDoubts::note_unused_play() {
 void RunDoubts::note_damped_peaks() {
   for (int j = 0; j < static_cast<int>(run_.model.joints.size()); ++j) {
     const double times = run_.watch.damped_by(j);
-    if (!(times > most_damped)) continue;
+    if (!(times > 0.0)) continue;
     const std::string joint = written_name(run_.model.joints[at(j)]);
     run_.outcome.doubts.push_back(
         {.id = "law-range",
@@ -228,7 +227,7 @@ void RunDoubts::note_damped_peaks() {
                          joint, times),
          .element = joint,
          .value = times,
-         .limit = most_damped});
+         .limit = RunWatch::most_damped});
   }
 }
 

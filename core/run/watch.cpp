@@ -16,6 +16,7 @@ namespace {
 constexpr double look_again = 1.21;  // where the square of a force has grown so much since the last look
 constexpr double unmoved = 1e-6;     // of the clearance
 constexpr double nearly_deepest = 0.25;
+constexpr double good_part = 0.3;   // of the largest force in the run
 constexpr double by_elastic = 2.5;  // of force times depth to what is stored, of K delta^1.5
 }  // namespace
 
@@ -84,16 +85,17 @@ int RunWatch::add(std::span<const double> row, const Evaluation& e) {
   add_speeds(row);
   int found = -1;
   for (Contact& contact : contacts_) {
-    const double squared = force_squared(e, contact.joint);
-    contact.depth.add(row[at(contact.penetration)]);
+    const double squared = force_squared(e, contact.joint), depth = row[at(contact.penetration)];
+    contact.depth.add(depth);
     contact.due = std::max(contact.due, look_again * squared);
-    if (squared > contact.most) {
-      const double depth = row[at(contact.penetration)];
-      contact.most = squared, contact.depth_then = depth;
-      contact.by_spring = std::sqrt(squared) * depth / e.potential[at(contact.joint)];
+    contact.hardest = std::max(contact.hardest, squared);
+    if (depth > 0.0) {
+      contact.now.add(squared, depth, e.potential[at(contact.joint)]);
+    } else if (contact.now.deepest > 0.0) {
+      contact.damped = harder_damped(contact.damped, contact.now);
+      contact.now = {};
     }
-    const bool senseless =
-        row[at(contact.penetration)] > contact.deepest || squared > contact.strongest * contact.strongest;
+    const bool senseless = depth > contact.deepest || squared > contact.strongest * contact.strongest;
     if (senseless && found < 0) found = contact.joint;
   }
   return found;
@@ -211,10 +213,17 @@ void RunWatch::add_drivers(std::span<const double> row, const Evaluation& e) {
   }
 }
 
+RunWatch::Press RunWatch::harder_damped(const Press& one, const Press& other) {
+  const bool damped = std::isfinite(other.by_spring) && other.by_spring > most_damped * by_elastic &&
+                      other.depth_then >= nearly_deepest * other.deepest;
+  return damped && other.most > one.most ? other : one;
+}
+
 double RunWatch::damped_by(int joint) const {
   for (const Contact& contact : contacts_) {
-    if (contact.joint != joint || !(contact.depth_then >= nearly_deepest * contact.depth.most)) continue;
-    if (std::isfinite(contact.by_spring)) return contact.by_spring / by_elastic;
+    if (contact.joint != joint) continue;
+    const Press damped = harder_damped(contact.damped, contact.now);
+    return damped.most >= good_part * good_part * contact.hardest ? damped.by_spring / by_elastic : 0.0;
   }
   return 0.0;
 }

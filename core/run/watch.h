@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -165,9 +166,11 @@ class RunWatch {
     }
     return false;
   }
-  /// How many times as hard a joint with play pressed, where it pressed hardest and nearly deepest, as its stiffness
-  /// alone does at that depth; 0 where it did not. Of a force by delta^1.5; of one by delta 0.8 of it.
+  /// How many times as hard a joint with play pressed as its stiffness alone does at that depth, in the contact with
+  /// the largest force of those in which that was more than most_damped where it pressed hardest and nearly deepest, if
+  /// that force is a good part of the largest of all; else 0. Of a force by delta^1.5; of one by delta 0.8 of it.
   double damped_by(int joint) const;
+  static constexpr double most_damped = 8.0;  ///< a law for a restitution of 0.2 needs 7
   /// Whether the journal of a joint with play never moved in its bearing, nor touched it.
   bool never_moved(int joint) const;
   const RunExtremes& seen() const { return seen_; }
@@ -179,20 +182,36 @@ class RunWatch {
 
  private:
   SingularPassage passage_;
+  /// Surfaces that touch, from when they meet until they part.
+  struct Press {
+    double deepest = 0.0;                 // [m]
+    double most = 0.0, depth_then = 0.0;  // square of the largest force [N^2], depth there [m]
+    double by_spring = 0.0;               // there: force times depth by what the contact stores
+    void add(double squared, double depth, double stored) {
+      deepest = std::max(deepest, depth);
+      if (squared > most) most = squared, depth_then = depth, by_spring = std::sqrt(squared) * depth / stored;
+    }
+    template <class Self, class Archive>
+    static void exchange(Self& self, Archive& archive) {
+      archive(self.deepest, self.most, self.depth_then, self.by_spring);
+    }
+  };
   struct Contact {
     int joint = 0, penetration = -1;
     double play = 0.0;       // clearance [m]
     double deepest = 0.0;    // clearance and smaller radius [m]
     double strongest = 0.0;  // force that no material carries [N]
     RunExtremes::Range depth{};
-    double due = 0.0;  // square of the force from which on the row is looked at again [N^2]
-    // At the largest force, its square [N^2], the depth [m], and force times depth by what the contact stores.
-    double most = 0.0, depth_then = 0.0, by_spring = 0.0;
+    double due = 0.0;      // square of the force from which on the row is looked at again [N^2]
+    double hardest = 0.0;  // square of the largest force [N^2]
+    Press now{};           // since the surfaces met last
+    Press damped{};        // the one with the largest force of those that damping has pressed too hard
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.depth, self.due, self.most, self.depth_then, self.by_spring);
+      archive(self.depth, self.due, self.hardest, self.now, self.damped);
     }
   };
+  static Press harder_damped(const Press& one, const Press& other);
   static double force_squared(const Evaluation& e, int joint) {
     const double* f = &e.wrench[12 * static_cast<std::size_t>(joint) + 6];
     return f[0] * f[0] + f[1] * f[1] + f[2] * f[2];

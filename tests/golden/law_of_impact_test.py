@@ -29,7 +29,12 @@ class LawOfImpact(ProgramTest):
     def test_a_contact_that_hardly_approached_is_doubted(self):
         (reason,) = self.reasons(BOB)
         self.assertEqual(("law-range", "doubtful", "joint 'pin'"), (reason["id"], reason["level"], reason["element"]))
-        self.assertGreater(reason["value"], 15)
+        self.assertGreater(reason["value"], 8)
+
+    def test_one_before_a_harder_blow_is_doubted(self):
+        blow = BOB.replace('smooth(t, 5 ms, 0.1)"', 'smooth(t, 5 ms, 0.1) + 1500 N*smooth(t, 0.1, 0.1001)"').replace("end: 0.1,", "end: 0.103,")
+        (reason,) = self.reasons(blow)
+        self.assertGreater(reason["value"], 8)
 
     def test_a_blow_and_a_law_without_loss_are_not(self):
         for text in (BOB.replace("-1 um/s", "-0.1 m/s"), BOB.replace("law: hu-guo, restitution: 0.5", "law: hertz"),
