@@ -16,8 +16,9 @@ struct HiddenChange {
   double range = 0.0;   ///< of all that was seen of it in the run
   const char* unit;
 
-  /// Whether that is more than steps of one size need not show.
-  bool counts() const;
+  /// Whether that is more than steps of one size need not show, and of a force or torque more than roundings of the
+  /// weight of all bodies.
+  bool counts(const RunContext& run) const;
   /// Adds a warning and the doubt `unresolved-input` of what is called `element`.
   [[gnu::cold]] void say(RunContext& run, const std::string& element) const;
 };

@@ -351,7 +351,7 @@ void JointFormulas::format() {
                                 .unit = course.kind == Course::Kind::length   ? "m"
                                         : course.kind == Course::Kind::torque ? "N m"
                                                                               : "N"};
-      if (!change.counts()) continue;
+      if (!change.counts(run_)) continue;
       change.say(run_, written_name(joint));
       break;
     }

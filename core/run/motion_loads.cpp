@@ -399,8 +399,8 @@ void MotionLoads::format() {
                                 .at = formula.at,
                                 .range = std::max(formula.high - formula.low, 0.0) + formula.beyond,
                                 .unit = load.load->turns ? "N m" : "N"};
-      if (!change.counts() && !formula.impulse.counts()) continue;
-      if (change.counts()) {
+      if (!change.counts(run_) && !formula.impulse.counts()) continue;
+      if (change.counts(run_)) {
         change.say(run_, load.load->words);
       } else {
         formula.impulse.say(run_, load.load->words);
