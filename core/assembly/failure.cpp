@@ -104,6 +104,9 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     location = joint.location;
     text += sides_of_loop(model, gap->joint);
   }
+  if (const double far = farthest_body(mechanism); far > LoopGap::far_away * mechanism.system.size())
+    text +=
+        fmt::format("; it comes so near only with a body {:.3g} m away: check the directions of slides and slots", far);
   text += too_many(rows);
   if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
   text += begin_of_paths(mechanism);

@@ -49,6 +49,17 @@ class IdleTurns {
     return swings ? joints : std::vector<int>{};
   }
 
+  /// The body that a driver only spins about a line on which all that ties it to other moving bodies lies, or ground.
+  BodyId spun_by(const Driver& driver) const {
+    const JointElement& driven = model_.joints[at(driver.joint)];
+    for (const BodyId body : {body_of(driven.marker_a), body_of(driven.marker_b)}) {
+      if (body == ground || !is_tied_to_another(body, driver.joint)) continue;
+      const MatrixXd own = rows_.topRows(closed_.layout().first_driver_row()).middleCols(width * body, width);
+      if (null_space(own).cols() > 0) return body;
+    }
+    return ground;
+  }
+
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
   int marker_of(int joint, BodyId body) const {
     const JointElement& element = model_.joints[at(joint)];
@@ -59,6 +70,18 @@ class IdleTurns {
   bool is_geared(int joint) const {
     return std::ranges::any_of(model_.gears,
                                [&](const Gear& gear) { return gear.first == joint || gear.second == joint; });
+  }
+  /// To a moving body beside the joint, by joints alone.
+  bool is_tied_to_another(BodyId body, int beside) const {
+    bool tied = false;
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      const JointElement& joint = model_.joints[at(j)];
+      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
+      if (j == beside || joint.gear >= 0 || (a != body && b != body)) continue;
+      if (is_force_element(joint) || is_geared(j)) return false;
+      tied = tied || (a != ground && b != ground);
+    }
+    return tied && !is_geared(beside) && !is_loaded(body);
   }
   bool is_loaded(BodyId body) const {
     return std::ranges::any_of(model_.forces, [&](const AppliedForce& force) { return body_of(force.marker) == body; });
@@ -105,6 +128,16 @@ void doubt_idle_turns(
                       model.joints[at(joints[0])].name, second.name, body.name,
                       model.markers[at(turns.marker_of(joints[1], b))].name),
           second);
+  }
+  for (const Driver& driver : model.drivers) {
+    const BodyId spun = driver.kinematics < 0 ? turns.spun_by(driver) : ground;
+    if (spun == ground) continue;
+    const JointElement& driven = model.joints[at(driver.joint)];
+    doubt("locked",
+          fmt::format("driver '{}' moves nothing but '{}', about a line on which all of its joints lie: is joint '{}' "
+                      "meant about another axis",
+                      driver.name, model.bodies[at(spun)].name, driven.name),
+          driven);
   }
 }
 

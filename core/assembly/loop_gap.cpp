@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "base/index.h"
 #include "linear/stacked_rows.h"
@@ -99,6 +100,19 @@ class Opening {
 
 }  // namespace
 
+double farthest_body(const ClosedMechanism& mechanism) {
+  const std::span<const double> q = mechanism.state.q();
+  const std::size_t width = at(mechanism.system.layout().body_coordinates());
+  const std::size_t ways = mechanism.model().space == Space::planar ? 2 : 3;
+  double most = 0.0;
+  for (std::size_t first = 0; first + width <= q.size(); first += width) {
+    double squares = 0.0;
+    for (std::size_t i = first; i < first + ways; ++i) squares += q[i] * q[i];
+    most = std::max(most, std::sqrt(squares));
+  }
+  return most;
+}
+
 std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
   if (mechanism.system.layout().nv() > 200) return std::nullopt;
   const std::vector<double> q(mechanism.state.q().begin(), mechanism.state.q().end());
@@ -120,6 +134,7 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
     if (joint < 0) continue;
     const auto [open, others] = opening.settle(joint);
     if (!(others <= closed_enough * std::max(1.0, mechanism.system.size()))) continue;
+    if (farthest_body(mechanism) > LoopGap::far_away * std::max(mechanism.system.size(), open)) continue;
     if (!gap || open < (1.0 - 1e-6) * gap->size) gap = LoopGap{joint, open};
   }
   std::ranges::copy(q, mechanism.state.q().begin());

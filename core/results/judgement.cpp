@@ -10,6 +10,7 @@
 #include "results/load_judgement.h"
 #include "results/path_judgement.h"
 #include "results/singular_judgement.h"
+#include "results/slide_judgement.h"
 #include "results/touch_judgement.h"
 #include "run/lasting_blows.h"
 #include "run/motion_period.h"
@@ -428,6 +429,7 @@ void judge(const RunRecord& record, Verdict& verdict) {
   judge_touch(record, verdict);
   judge_steps_per_impact(record, verdict);
   judge_reach(record, verdict);
+  judge_slides(record, verdict);
   judge_paths(record, verdict);
   judge_singular(record, verdict);
   judge_largest_force(record, verdict);

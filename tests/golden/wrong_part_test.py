@@ -83,6 +83,36 @@ forces:
 drivers: {motor: {joint: shaft, kind: velocity, value: "100*smooth(t, 0, 1)"}}
 simulation: {end: 2, accuracy: 1 um}
 """
+# A slot along the way in place of across it: far out, a turn of the yoke by 0.03 mrad would bring the slot to the pin.
+YOKE = """freeplay: 1
+bodies:
+  crank: {mass: 1.1, inertia: 6e-4, frames: {pin: [30 mm, 0]}}
+  yoke: {mass: 0.9, inertia: 2e-3, frames: {slot: {angle: 90 deg}, face: [80 mm, 0]}}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  way: {type: prismatic, between: [ground, yoke]}
+  slot: {type: point-on-line, between: [yoke/slot, crank/pin]}
+forces: {gas: {type: spring-damper, between: [ground, yoke/face], stiffness: 2 N/mm, damping: 15, free_length: 100 mm}}
+drivers: {motor: {joint: main, kind: velocity, value: 300 rpm}}
+initial: {joints: {main: 40 deg}}
+simulation: {end: 0.1, accuracy: 1 um}
+"""
+# A crank in space about its own length.
+SPUN = """freeplay: 1
+space: spatial
+bodies:
+  crank: {mass: 0.3, inertia: [1e-5, 2e-4, 2e-4], frames: {tip: [0.035, 0, 0]}}
+  rod: {mass: 0.2, inertia: [2e-5, 1e-3, 1e-3], com: [0.1, 0, 0], frames: {end: [0.2, 0, 0]}, pose: {position: [0.035, 0, 0]}}
+  slide: {mass: 0.5, inertia: [1e-3, 1e-3, 1e-3], pose: {position: [0.235, 0, 0]}}
+joints:
+  main: {type: revolute, between: [ground, crank], axis: [0, 0, 1]}
+  big: {type: spherical, between: [crank/tip, rod]}
+  small: {type: spherical, between: [rod/end, slide]}
+  bore: {type: prismatic, between: [ground, slide], axis: [1, 0, 0]}
+drivers: {motor: {joint: main, kind: velocity, value: 60}}
+initial: {joints: {main: 0.5}}
+simulation: {end: 0.1, accuracy: 1 um}
+"""
 LINK = "jaw: {mass: 300, inertia: 40, com: [0, -0.5]"
 SLIPS = [
     (STRUT, "stiffness: 32e3", "stiffness: 32", "doubtful-value", "'coil' is so weak that it would have to give by 138 m"),
@@ -94,12 +124,14 @@ SLIPS = [
     (CRUSHER, "shaft: {mass: 60,", "shaft: {mass: 60, com: [30, 0],", "doubtful-length", "the centre of mass of 'shaft' is 29.99 m away from its joints"),
     (SCREEN, "[ground/r, deck/r]", "[ground/l, deck/r]", "doubtful-length", "'right' starts pulled to 7.26 times its free length"),
     (SCREEN, "100*smooth", "1000*smooth", "doubtful-speed", "that is 9549 rpm"),
+    (SPUN, "crank], axis: [0, 0, 1]", "crank], axis: [1, 0, 0]", "locked", "driver 'motor' moves nothing but 'crank'"),
 ]
 OPEN = [
     (CRUSHER, "[12 mm, 0]", "[12, 0]", "that of 'shaft' is longer than the others together"),
     (CRUSHER, "[0.39, 0]", "[0.039, 0]", "the sides of its loop are 'shaft' 0.012 m, 'jaw' 1.1 m, 'toggle' 0.039 m and ground 1.242 m"),
     (CRUSHER, "front: {type: revolute, between: [jaw/toe, toggle/end]}\n  rear: {type: revolute",
      "front: {type: fixed, between: [jaw/toe, toggle/end]}\n  rear: {type: fixed", "hold 1 freedom more than the bodies have"),
+    (YOKE, "slot: {angle: 90 deg}", "slot: [0, 0]", "m away: check the directions of slides and slots"),
 ]
 # A bearing that rests 60 nm deep under its load.
 ROBOT = """freeplay: 1
@@ -118,6 +150,29 @@ drivers:
   one: {joint: shoulder, kind: angle, value: "-0.6 + 0.3*sin(2*pi*t)"}
   two: {joint: elbow, kind: angle, value: "1.6 + 0.3*sin(2*pi*t)"}
 simulation: {end: 1, accuracy: %s}
+"""
+
+
+# A plunger in a lever, whose spring holds it in.
+PLUNGER = """freeplay: 1
+gravity: [0, -9.81]
+bodies: {lever: {mass: 1, inertia: 0.02, com: [0.1, 0], frames: {bore: [0.2, 0]}}, plunger: {mass: 0.3, inertia: 1e-3}}
+joints: {pivot: {type: revolute, between: [ground, lever]}, bore: {type: prismatic, between: [lever/bore, plunger]}}
+forces: {spring: {type: spring-damper, between: [lever, plunger], stiffness: 400, damping: 5, free_length: 0.2}}
+initial: {joints: {pivot: -30 deg, bore: 0}}
+simulation: {end: 2, accuracy: 1 um}
+"""
+# A block that is thrown up from a curve and is back after 0.2 s.
+THROWN = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {rail: {angle: 90 deg}, curve: [0, 0]}}
+  block: {mass: 2, inertia: 1, frames: {rail: {angle: 90 deg}}}
+joints:
+  guide: {type: prismatic, between: [ground/rail, block/rail]}
+  c: {type: point-on-curve, between: [ground/curve, block], curve: 0*x, lift_off: {contact: {law: kelvin-voigt, K: 2e5, D: 50}}}
+initial: {speeds: {guide: 1}}
+simulation: {end: %s, accuracy: 1 um}
 """
 
 
@@ -142,9 +197,23 @@ class WrongPart(ProgramTest):
                 self.assertIn(words, "".join(found))
 
     def test_what_is_meant_is_not_doubted(self):
-        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN):
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN):
             with self.subTest(text[:300]):
                 self.assertEqual([], self.messages(text))
+
+    def verdict(self, text):
+        self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")
+        return [(r["id"], r["element"]) for r in json.loads(self.read("r", "summary.json"))["trust"]["reasons"]]
+
+    def test_a_body_that_slides_off_another_is_in_the_verdict(self):
+        self.assertEqual([], self.verdict(PLUNGER))
+        loose = "spring: {type: spring-damper, between: [lever, plunger], stiffness: 400, damping: 5, free_length: 0.2}"
+        drag = "drag: {type: spring-damper, kind: rotational, between: [ground, lever], stiffness: 30, damping: 1}"
+        self.assertEqual([("out-of-reach", "joint 'bore'")], self.verdict(PLUNGER.replace(loose, drag)))
+
+    def test_a_follower_that_never_touches_is_in_the_verdict(self):
+        self.assertEqual([], self.verdict(THROWN % "0.4 s"))
+        self.assertEqual([("never-touches", "joint 'c'")], self.verdict(THROWN % "0.2 s"))
 
     def noise_and_peak(self, accuracy):
         self.freeplay("run", self.write("m.yaml", ROBOT % accuracy), "--out", "r", "--force")
