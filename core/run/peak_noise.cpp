@@ -160,10 +160,15 @@ void PeakNoise::add(double t, std::span<const double> values) {
 }
 
 void PeakNoise::follow_ringing(std::span<const double> values) {
-  std::ranges::fill(rests_, 0);
+  int longest = 0;
   for (ShallowContact& contact : shallow_) {
     const double depth = values[contact.depth];
     contact.steps = depth > 0.0 && depth < accuracy_ ? std::min(contact.steps + 1, steps_at_rest + 1) : 0;
+    longest = std::max(longest, contact.steps);
+  }
+  if (longest < steps_at_rest) return;
+  std::ranges::fill(rests_, 0);
+  for (const ShallowContact& contact : shallow_) {
     int& rests = rests_[at(groups_[contact.depth])];
     rests = std::max(rests, contact.steps);
   }
