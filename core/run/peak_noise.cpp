@@ -162,8 +162,16 @@ void PeakNoise::add(double t, std::span<const double> values) {
 void PeakNoise::follow_ringing(std::span<const double> values) {
   int longest = 0;
   for (ShallowContact& contact : shallow_) {
+    if (contact.steps < 0) continue;
     const double depth = values[contact.depth];
-    contact.steps = depth > 0.0 && depth < accuracy_ ? std::min(contact.steps + 1, steps_at_rest + 1) : 0;
+    if (depth >= accuracy_) {
+      // Where one contact goes deeper the others' forces are little of all that there is.
+      for (ShallowContact& other : shallow_) {
+        if (groups_[other.depth] == groups_[contact.depth]) other.steps = -1;
+      }
+      continue;
+    }
+    contact.steps = depth > 0.0 ? std::min(contact.steps + 1, steps_at_rest + 1) : 0;
     longest = std::max(longest, contact.steps);
   }
   if (longest < steps_at_rest) return;
@@ -230,9 +238,8 @@ double PeakNoise::largest_seen(std::size_t value) const {
 }
 
 double PeakNoise::by_ringing(std::size_t value) const {
-  // Where one contact goes deeper the others' forces are little of all that there is.
   const auto deep = [&](const ShallowContact& contact) {
-    return groups_[contact.depth] == groups_[value] && largest_seen(contact.depth) >= accuracy_;
+    return groups_[contact.depth] == groups_[value] && contact.steps < 0;
   };
   return ringing_.empty() || std::ranges::any_of(shallow_, deep) ? 0.0 : ringing_[value].largest();
 }

@@ -99,7 +99,7 @@ class PeakNoise {
   };
   struct ShallowContact {
     std::size_t depth = 0;  // the value of its penetration
-    int steps = 0;          // in a row that it was on, less deep than the accuracy
+    int steps = 0;          // in a row that it was on; negative: one of its group was deeper than the accuracy
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
       archive(self.steps);
