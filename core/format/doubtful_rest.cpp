@@ -136,7 +136,8 @@ class RestDoubts {
     Jet first, jet;
     EvaluationFailure failure;
     if (!formula.evaluate(from, first, failure)) return false;
-    return std::ranges::all_of(std::initializer_list{0.23, 0.5, 0.77}, [&](double part) {
+    constexpr double parts[] = {0.23, 0.5, 0.77};
+    return std::ranges::all_of(parts, [&](double part) {
       return formula.evaluate(from + part * (until - from), jet, failure) && jet.value == first.value;
     });
   }
