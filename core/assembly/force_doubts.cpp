@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/element_number.h"
 #include "assembly/given_damping.h"
 #include "base/index.h"
 #include "model/force_element.h"
@@ -65,11 +66,6 @@ class ForceDoubts {
   }
 
  private:
-  static double number(const JointElement& joint, const char* name) {
-    const auto found = joint.parameters->values.find(name);
-    return found == joint.parameters->values.end() ? std::nan("") : found->second.number;
-  }
-
   /// A gear with the bodies of the joints that it couples.
   void list_at_bodies(int j) {
     const JointElement& joint = model_.joints[at(j)];
@@ -117,7 +113,7 @@ class ForceDoubts {
   /// Where none is given it is zero.
   void judge_pull(const JointElement& joint, double length) const {
     const auto free = joint.parameters->values.find(std::string_view("free_length"));
-    const double stiffness = number(joint, "stiffness"), preload = number(joint, "preload");
+    const double stiffness = element_number(joint, "stiffness"), preload = element_number(joint, "preload");
     const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
     if (turns || free == joint.parameters->values.end() || free->second.given || !(preload == 0.0)) return;
     const double mass = whole_mass(model_).mass;
@@ -132,7 +128,7 @@ class ForceDoubts {
   }
 
   void judge_length(const JointElement& joint) const {
-    const double free = number(joint, "free_length");
+    const double free = element_number(joint, "free_length");
     const auto [x, y, z] = apart(joint);
     const double length = std::hypot(x, y, z);
     if (free == 0.0) judge_pull(joint, length);
@@ -156,7 +152,7 @@ class ForceDoubts {
 
   /// Pulled out from the start, as between frames that are not meant.
   void judge_stretch(const JointElement& joint, double length, double free) const {
-    const double stiffness = number(joint, "stiffness"), mass = whole_mass(model_).mass;
+    const double stiffness = element_number(joint, "stiffness"), mass = whole_mass(model_).mass;
     const double pull = stiffness * (length - free);
     if (!(length > most_pulled * free && pull > strong_pull * earth * mass)) return;
     doubt_("doubtful-length",
@@ -168,7 +164,7 @@ class ForceDoubts {
 
   /// What is longer by its own length before anything pulls.
   void judge_pretension(const JointElement& joint) const {
-    const double pretension = number(joint, "pretension"), stiffness = number(joint, "stiffness");
+    const double pretension = element_number(joint, "pretension"), stiffness = element_number(joint, "stiffness");
     const auto [x, y, z] = apart(joint);
     const double length = std::hypot(x, y, z);
     if (!(stiffness > 0.0) || !(pretension > stiffness * std::max(length, system_.size()))) return;
@@ -191,7 +187,7 @@ class ForceDoubts {
 
   /// Against that which just keeps the heavier of both bodies from swinging on the spring.
   void judge_damping(const JointElement& joint) const {
-    const double damping = given_damping(joint), stiffness = number(joint, "stiffness");
+    const double damping = given_damping(joint), stiffness = element_number(joint, "stiffness");
     const bool turns = joint.ideal_layout().coordinate == Coordinate::angle;
     const double moved = std::max(inertia_at(joint.marker_a, turns), inertia_at(joint.marker_b, turns));
     if (!(stiffness > 0.0) || !(damping > most_damping * 2.0 * std::sqrt(stiffness * moved))) return;
@@ -319,7 +315,7 @@ class ForceDoubts {
       const double k = is_force_element(joint) && joint.parameters ? stiffness_along(joint, gravity) : std::nan("");
       if (is_force_element(joint) && k > 0.0 && joint.ideal_layout().coordinate != Coordinate::angle) {
         add_spring(hold, joint, k, body);
-      } else if (is_force_element(joint) && (k == 0.0 || number(joint, "friction") >= 0.0)) {
+      } else if (is_force_element(joint) && (k == 0.0 || element_number(joint, "friction") >= 0.0)) {
         continue;  // holds nothing
       } else if (const BodyId other = other_body(joint, body); other != ground && joints_of_[at(other)].size() == 1) {
         hold.mass += model_.bodies[at(other)].mass;
@@ -335,8 +331,9 @@ class ForceDoubts {
 
   /// Of a spring along its line; of an elastic bed along gravity, or its least where there is none [N/m].
   double stiffness_along(const JointElement& joint, const Vector3& gravity) const {
-    if (const double k = number(joint, "stiffness"); !std::isnan(k)) return k;
-    const double of_axes[] = {number(joint, "stiffness.x"), number(joint, "stiffness.y"), number(joint, "stiffness.z")};
+    if (const double k = element_number(joint, "stiffness"); !std::isnan(k)) return k;
+    const double of_axes[] = {element_number(joint, "stiffness.x"), element_number(joint, "stiffness.y"),
+                              element_number(joint, "stiffness.z")};
     const double* axes = at_start_.markers[at(joint.marker_a)].rotation;
     const double amount = std::hypot(gravity[0], gravity[1], gravity[2]);
     double along = 0.0, least = std::nan("");
@@ -351,7 +348,8 @@ class ForceDoubts {
 
   void add_spring(Hold& hold, const JointElement& joint, double k, BodyId body) const {
     const auto [x, y, z] = apart(joint);
-    const double length = std::hypot(x, y, z), free = number(joint, "free_length"), preload = number(joint, "preload");
+    const double length = std::hypot(x, y, z), free = element_number(joint, "free_length"),
+                 preload = element_number(joint, "preload");
     const Vector3& gravity = model_.bodies[at(body)].gravity;
     // From the body towards the other end.
     const double towards =
@@ -359,7 +357,7 @@ class ForceDoubts {
     hold.stiffness += k;
     hold.push += std::abs((std::isnan(free) ? 0.0 : k * (length - free)) + (std::isnan(preload) ? 0.0 : preload));
     hold.longest = std::max({hold.longest, length, free});
-    const bool bed = std::isnan(number(joint, "stiffness"));
+    const bool bed = std::isnan(element_number(joint, "stiffness"));
     hold.pressed = hold.pressed && (bed || towards > 0.0);
     if (hold.first == nullptr) hold.first = &joint;
   }

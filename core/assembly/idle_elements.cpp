@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/element_number.h"
 #include "assembly/element_rates.h"
 #include "assembly/given_damping.h"
 #include "assembly/row_space.h"
@@ -179,16 +180,12 @@ class Elements {
 
   // --- stops -----------------------------------------------------------------------------------------------------
 
-  static double number(const JointElement& element, const char* name) {
-    const auto found = element.parameters->values.find(name);
-    return found == element.parameters->values.end() ? std::nan("") : found->second.number;
-  }
-
   /// A start far beyond an end, where a stop pushes with all of its stiffness.
   void judge_ends(int j) {
     const JointElement& element = model_.joints[at(j)];
     if (element.ideal_layout().coordinate == Coordinate::none) return;
-    const double lower = number(element, "lower"), upper = number(element, "upper"), here = e_.coordinate[at(j)];
+    const double lower = element_number(element, "lower"), upper = element_number(element, "upper"),
+                 here = e_.coordinate[at(j)];
     const double beyond = std::fmax(lower - here, here - upper);
     const bool turns = element.ideal_layout().coordinate == Coordinate::angle;
     const double most = std::max(most_beyond * (upper - lower), least_beyond * (turns ? 1.0 : system_.size()));
@@ -204,8 +201,8 @@ class Elements {
   /// A torsion spring wound by a whole turn: from an angle of -10 deg it is one to the direction of 350 deg.
   void judge_turn(int j) {
     const JointElement& element = model_.joints[at(j)];
-    const double free = number(element, "free_angle"), here = e_.coordinate[at(j)],
-                 stiffness = number(element, "stiffness");
+    const double free = element_number(element, "free_angle"), here = e_.coordinate[at(j)],
+                 stiffness = element_number(element, "stiffness");
     const double turns = std::round((here - free) * in_turns), same = free + turns / in_turns;
     const bool by_one = std::abs(turns) == 1.0 && std::abs(here - same) * in_turns < most_unwound;
     const auto spring = element.parameters->values.find("spring");
@@ -229,7 +226,7 @@ class Elements {
     Eigen::Vector3d back;              ///< a speed of the second centre by which the line of both turns back [1/m]
   };
   std::optional<Strands> strands_of(const JointElement& element) const {
-    const double first = number(element, "first_radius"), second = number(element, "second_radius");
+    const double first = element_number(element, "first_radius"), second = element_number(element, "second_radius");
     const auto strands = element.parameters->values.find("strands");
     const Eigen::Vector3d line = rates_.apart(element);
     if (!(first > 0.0 && second > 0.0) || strands == element.parameters->values.end() ||

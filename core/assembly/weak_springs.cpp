@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "assembly/element_number.h"
 #include "assembly/element_rates.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
@@ -28,11 +29,6 @@ struct Spring {
   double own = 1.0;  ///< length [m], or one radian
 };
 
-double number(const JointElement& element, const char* name) {
-  const auto found = element.parameters->values.find(name);
-  return found == element.parameters->values.end() ? std::nan("") : found->second.number;
-}
-
 bool has_formula(const ParameterBlock& block) {
   return std::ranges::any_of(block.values, [](const auto& entry) {
     return entry.second.formula || entry.second.by_motion || entry.second.law != nullptr;
@@ -42,16 +38,18 @@ bool has_formula(const ParameterBlock& block) {
 /// Nothing where the element may hold otherwise than by one stiffness.
 std::optional<Spring> spring_of(const JointElement& element) {
   if (!element.parameters || has_formula(*element.parameters)) return std::nullopt;
-  Spring spring{.element = &element, .stiffness = number(element, "stiffness"), .preload = number(element, "preload")};
+  Spring spring{.element = &element,
+                .stiffness = element_number(element, "stiffness"),
+                .preload = element_number(element, "preload")};
   if (!(spring.stiffness > 0.0) || std::isnan(spring.preload)) return std::nullopt;
   if (element.ideal_layout().coordinate == Coordinate::angle) return spring;
-  spring.own = number(element, "free_length");
+  spring.own = element_number(element, "free_length");
   return spring.own > 0.0 ? std::optional(spring) : std::nullopt;
 }
 
 bool only_damps(const JointElement& element) {
-  return element.parameters && !has_formula(*element.parameters) && number(element, "stiffness") == 0.0 &&
-         !(std::abs(number(element, "preload")) > 0.0);
+  return element.parameters && !has_formula(*element.parameters) && element_number(element, "stiffness") == 0.0 &&
+         !(std::abs(element_number(element, "preload")) > 0.0);
 }
 
 VectorXd weight_of(const System& system) {
@@ -77,8 +75,7 @@ void doubt_weak_springs(const System& closed, const Evaluation& shut,
   MatrixXd along(0, closed.layout().nv());
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& element = model.joints[at(j)];
-    if (!is_force_element(element)) continue;
-    if (only_damps(element)) continue;
+    if (!is_force_element(element) || only_damps(element)) continue;
     const std::optional<Spring> spring = spring_of(element);
     const std::optional<MatrixXd> rate = spring ? rates.of(j) : std::nullopt;
     if (!rate) return;
