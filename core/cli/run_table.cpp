@@ -281,7 +281,7 @@ std::string steps_per_impact(const RunRecord& record) {
 /// What a figure with its noise says, where there is one.
 std::string noise_line(const Model& model, const std::string& tables) {
   if (tables.find(" +- ") == std::string::npos) return {};
-  return fmt::format("  +-: impacts make the motion chaotic; another step or build may change a figure by so much{}\n",
+  return fmt::format("  +-: another step, accuracy or build may change a figure by so much{}\n",
                      can_be_repeated(model) ? ", another start by more (--repeat N)" : "");
 }
 

@@ -26,6 +26,8 @@ class LargestValues {
   void raise_before(std::size_t value, double to) { before_[value] = std::max(before_[value], to); }
   /// Any event of a joint, with its fields.
   void note_event(int joint, int event, std::span<const double> fields) { noise_.event(joint, event, fields); }
+  /// See PeakNoise.
+  void note_growth(std::span<const double> grown) { noise_.differences_grow(grown); }
 
   /// Which value stands where.
   const PeakValues& places() const { return places_; }

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "base/index.h"
 #include "component/joint_roles.h"
+#include "run/body_groups.h"
 
 namespace freeplay {
 namespace {
@@ -40,41 +40,9 @@ Tail tail(std::span<double> values, std::size_t most_gaps) {
   return out;
 }
 
-/// Bodies that joints, gears and springs hold together, as groups: a number each, from 0 on.
-class Groups {
- public:
-  explicit Groups(const Model& model) : model_(model), of_(model.bodies.size()) {
-    std::iota(of_.begin(), of_.end(), 0);
-    for (const JointElement& joint : model.joints) {
-      if (joint.gear < 0) unite(body(joint.marker_a), body(joint.marker_b));
-    }
-    for (const Gear& gear : model.gears) unite(moved(gear.first), moved(gear.second));
-  }
-  int of_body(BodyId body) const { return body == ground ? of_nothing : of_[at(body)]; }
-  int of_marker(int marker) const { return of_body(body(marker)); }
-  int of_joint(int joint) const { return of_body(moved(joint)); }
-
-  static constexpr int of_nothing = -1;
-
- private:
-  BodyId body(int marker) const { return model_.markers[at(marker)].body; }
-  BodyId moved(int joint) const {
-    const JointElement& element = model_.joints[at(joint)];
-    if (element.gear >= 0) return moved(model_.gears[at(element.gear)].first);
-    return body(element.marker_b) == ground ? body(element.marker_a) : body(element.marker_b);
-  }
-  void unite(BodyId a, BodyId b) {
-    if (a == ground || b == ground) return;
-    std::ranges::replace(of_, int{of_[at(b)]}, int{of_[at(a)]});
-  }
-
-  const Model& model_;
-  std::vector<int> of_;
-};
-
 /// The group that each value hangs on; of_nothing for loads that the model gives.
-std::vector<int> groups_of_values(const Model& model, const PeakValues& places, const Groups& groups) {
-  std::vector<int> of(places.size(), Groups::of_nothing);
+std::vector<int> groups_of_values(const Model& model, const PeakValues& places, const BodyGroups& groups) {
+  std::vector<int> of(places.size(), BodyGroups::of_nothing);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) of[places.speed(b)] = groups.of_body(b);
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     for (const std::size_t place :
@@ -104,6 +72,7 @@ PeakNoise::PeakNoise(const Model& model, const PeakValues& places)
       part_length_((model.settings.end - from_) / parts),
       part_end_(from_ + part_length_),
       impacts_(model.bodies.size()),
+      grown_(model.bodies.size()),
       contacts_(model.joints.size()) {
   for (const JointElement& joint : model.joints) {
     forces_.push_back(places.force(static_cast<int>(kinds_.size())));
@@ -116,10 +85,9 @@ PeakNoise::PeakNoise(const Model& model, const PeakValues& places)
       active_ = active_ || kinds.back().begins;
     }
   }
-  if (!active_) return;
-  groups_ = groups_of_values(model, places, Groups(model));
+  groups_ = groups_of_values(model, places, BodyGroups(model));
   values_.resize(places.size());
-  if (accuracy_ == 0.0) return;
+  if (!active_ || accuracy_ == 0.0) return;
   ringing_.resize(places.size());
   rests_.resize(model.bodies.size());
   for (int j = 0; j < static_cast<int>(kinds_.size()); ++j) {
@@ -143,7 +111,9 @@ void PeakNoise::event(int joint, int event, std::span<const double> fields) {
   if (!grows) return;
   const int group = groups_[forces_[at(joint)]];
   ++contact.growing;
-  if (group >= 0) impacts_[at(group)] = std::max(impacts_[at(group)], contact.growing);
+  if (group < 0 || contact.growing <= impacts_[at(group)]) return;
+  impacts_[at(group)] = contact.growing;
+  grown_[at(group)] = grown_by(contact.growing);
 }
 
 void PeakNoise::add(double t, std::span<const double> values) {
@@ -154,7 +124,7 @@ void PeakNoise::add(double t, std::span<const double> values) {
     Part& part = values_[i].part[parts_over_];
     if (!(values[i] > part.largest)) continue;
     part.largest = values[i];
-    if (groups_[i] >= 0) part.impacts = impacts_[at(groups_[i])];
+    if (groups_[i] >= 0) part.grown = grown_[at(groups_[i])];
   }
   if (!shallow_.empty()) follow_ringing(values);
 }
@@ -207,9 +177,7 @@ bool PeakNoise::repeats(int group) const {
   return true;
 }
 
-double PeakNoise::grown(std::size_t value) const {
-  return active_ && groups_[value] >= 0 ? grown_by(impacts_[at(groups_[value])]) : 0.0;
-}
+double PeakNoise::grown(std::size_t value) const { return groups_[value] >= 0 ? grown_[at(groups_[value])] : 0.0; }
 
 PeakNoise::Bursts PeakNoise::bursts(std::span<const Part> seen, const std::function<bool(const Part&)>& chosen) {
   std::array<double, parts> of_bursts{}, of_parts{};
@@ -229,7 +197,7 @@ PeakNoise::Bursts PeakNoise::bursts(std::span<const Part> seen, const std::funct
 }
 
 double PeakNoise::of(std::size_t value) const {
-  if (!active_ || groups_[value] < 0) return 0.0;
+  if (groups_[value] < 0) return 0.0;
   return std::max(by_chance(value), std::min(by_ringing(value), largest_seen(value)));
 }
 
@@ -246,9 +214,9 @@ double PeakNoise::by_ringing(std::size_t value) const {
 
 double PeakNoise::by_chance(std::size_t value) const {
   const Part peak = std::ranges::max(seen(value), {}, &Part::largest);
-  const double most = peak.largest, grown = grown_by(peak.impacts);
-  const Bursts later = bursts(
-      seen(value), [&](const Part& part) { return part.impacts > peak.impacts && grown_by(part.impacts) > chaotic; });
+  const double most = peak.largest, grown = peak.grown;
+  const Bursts later =
+      bursts(seen(value), [&](const Part& part) { return part.grown > grown && part.grown > chaotic; });
   // A peak of chance itself is one of the draws.
   const double past = grown < 1.0 ? later.largest + later.beyond - most : 0.0;
   if (!(grown > 0.0)) return std::clamp(past, 0.0, most);

@@ -1,6 +1,7 @@
 // PeakNoise: how far the digits of the largest values of a run mean anything.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <functional>
@@ -45,11 +46,11 @@ class PeakNoise {
   [[gnu::cold]] PeakNoise(const Model& model, const PeakValues& places);
 
   /// Values inside the window of the statistics, in rising order of time [s].
-  void see(double t, std::span<const double> values) {
-    if (active_) add(t, values);
-  }
+  void see(double t, std::span<const double> values) { add(t, values); }
   /// An event of a joint: contacts begin and end with a field `speed` [m/s].
   void event(int joint, int event, std::span<const double> fields);
+  /// What SmallDifference knows of each group now.
+  void differences_grow(std::span<const double> grown) { std::ranges::copy(grown, grown_.begin()); }
 
   /// Whether anything in the model can touch.
   bool active() const { return active_; }
@@ -68,7 +69,7 @@ class PeakNoise {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.part_end_, self.parts_over_, self.impacts_, self.values_, self.contacts_, self.ringing_,
+    archive(self.part_end_, self.parts_over_, self.impacts_, self.grown_, self.values_, self.contacts_, self.ringing_,
             self.shallow_);
   }
 
@@ -76,10 +77,10 @@ class PeakNoise {
   static constexpr std::size_t parts = 32;
   struct Part {
     double largest = 0.0;
-    int impacts = 0;  // so far, at that time
+    double grown = 0.0;  // at that time
     template <class Self, class Archive>
     static void exchange(Self& self, Archive& archive) {
-      archive(self.largest, self.impacts);
+      archive(self.largest, self.grown);
     }
   };
   struct Value {
@@ -129,8 +130,9 @@ class PeakNoise {
   double accuracy_;  ///< 0: steps of one size [m]
   double from_, part_length_, part_end_;
   std::size_t parts_over_ = 0;
-  std::vector<int> impacts_;  // by group
-  std::vector<int> groups_;   // of each value
+  std::vector<int> impacts_;   // by group
+  std::vector<double> grown_;  // by group: what has become of a small difference, of all that chance can do
+  std::vector<int> groups_;    // of each value
   std::vector<Value> values_;
   std::vector<Ringing> ringing_;  // of each value, in a run with error control
   std::vector<ShallowContact> shallow_;

@@ -31,6 +31,7 @@ Recorder::Recorder(RunContext& run, RunFailure& failure, StepAttempt& attempt, S
       observer_(run.system, run.channels),
       left_out_(run.system, run.channels),
       statistics_(run.model, run.channels, run.adaptive),
+      difference_(run.system),
       clearances_(run.model, run.system.joints(), run.channels),
       slips_(run.system, run.channels),
       ledger_(run.system.joints(), run.channels),
@@ -109,6 +110,10 @@ bool Recorder::is_left_out() const {
 
 bool Recorder::record_step() {
   const Profile::Timer timer(run_.evaluations.profile, Phase::statistics);
+  if (difference_.is_due(run_.accepted.t())) {
+    difference_.follow(run_.accepted);
+    statistics_.largest().note_growth(difference_.grown());
+  }
   double position = 0.0, velocity = 0.0;
   for (std::size_t r = 0; r < residual_.size(); ++r) position = std::max(position, std::abs(run_.e_accepted->phi[r]));
   run_.watch.add_open(position);

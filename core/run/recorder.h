@@ -14,6 +14,7 @@
 #include "run/peak_search.h"
 #include "run/sink.h"
 #include "run/slip_watch.h"
+#include "run/small_difference.h"
 #include "run/statistics.h"
 #include "run/step_feed.h"
 #include "run/step_inside.h"
@@ -73,7 +74,7 @@ class Recorder {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.statistics_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_, self.row_,
+    archive(self.statistics_, self.difference_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_, self.row_,
             self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_, self.slips_);
   }
 
@@ -111,6 +112,7 @@ class Recorder {
   Observer observer_;
   LeftOutLoads left_out_;
   Statistics statistics_;
+  SmallDifference difference_;
   ClearanceStatistics clearances_;
   SlipWatch slips_;
   ContactLedger ledger_;

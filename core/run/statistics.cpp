@@ -66,8 +66,7 @@ Statistics::Statistics(const Model& model, const Channels& channels, bool long_s
       drivers_(model.drivers.size()),
       paths_(channels.paths.size()),
       long_steps_(long_steps),
-      mean_noise_(discard_until_, model.settings.end,
-                  largest_.noise().active() ? joints_.size() + drivers_.size() + 2 * paths_.size() : 0) {}
+      mean_noise_(discard_until_, model.settings.end, joints_.size() + drivers_.size() + 2 * paths_.size()) {}
 
 // A step that ends a rounding error before the instant belongs to what follows.
 bool Statistics::counts(double t) const {
