@@ -68,8 +68,8 @@ class CurveCheck {
     if (gap > most_gap * size_) {
       refuse("the curve is not closed: it begins " + metres(begin.value) + " from its origin and ends " +
              metres(end.value) + " from it after one turn (x = 2 pi), " + metres(gap) +
-             " apart; write it so that it comes back, as by sin, cos and smooth(), or give points with "
-             "'ends: periodic'");
+             " apart; write it so that it comes back, as by sin, cos and smooth() of angles in rad or with their unit, "
+             "or give points with 'ends: periodic'");
     }
     const double bend = corner(begin, end);
     if (bend > most_turn) {

@@ -17,7 +17,7 @@
 #include "assembly/gear_turn_choice.h"
 #include "assembly/idle_elements.h"
 #include "assembly/leg_modes.h"
-#include "assembly/locked_guide.h"
+#include "assembly/locked_parts.h"
 #include "assembly/placing.h"
 #include "assembly/play_rows.h"
 #include "assembly/start_branches.h"
@@ -232,6 +232,7 @@ class Assembler {
     if (!found) {
       std::ranges::copy(nearest, state_.q().begin());
       if (!mechanism_.paths.empty()) check_paths();
+      require_borne_loads(model_, offsets_);
       throw_open(mechanism_, mechanism_.position_rows());
     }
     keep_gear_offsets();
@@ -373,7 +374,7 @@ class Assembler {
     if (model_.clearance_joints() > 0) start.facts.ideal = ideal;
     start.structure = examine_structure(system_, released, start.state, closed_, e_, dead_start(system_, start.state),
                                         unstable_start(system_, start.state));
-    doubt_guides(system_, start.state, start.structure);
+    doubt_locked(system_, start.state, start.structure);
     judge_elements(state, start.structure);
     return start;
   }

@@ -1,6 +1,7 @@
 // GivenPoses: how far bodies stand from the poses that the file gives them.
 #pragma once
 
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace freeplay {
 /// what the file gives counts: a pose may be a position alone, or an angle alone.
 class GivenPoses {
  public:
+  /// A body farther away than this is said to be: [rad], and of the size of the model.
+  static constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
+
   explicit GivenPoses(const System& system);
 
   bool any() const { return rows_ > 0; }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include "assembly/play_gap.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
@@ -90,6 +92,20 @@ bool starts_by_its_load(const JointElement& joint) {
   return std::ranges::any_of(joint.parameters->values, [](const auto& entry) {
     return entry.second.given && entry.second.word > 0 && entry.first.ends_with(".initial");
   });
+}
+
+void require_borne_loads(const Model& model, const std::vector<InitialOffset>& offsets) {
+  for (std::size_t j = 0; j < model.joints.size(); ++j) {
+    const JointElement& joint = model.joints[j];
+    const double away = length(offsets[j].position), play = joint.layout.clearance;
+    if (!joint.has_play || !(play > 0.0) || !starts_by_its_load(joint) || !(away > 2.0 * play)) continue;
+    throw Error(
+        Error::Category::input, "assembly-failed",
+        fmt::format("joint '{}' has no start: its load presses it {:.3g} m deep, where the clearance is {:.3g} m, "
+                    "and the mechanism cannot be put together",
+                    joint.name, away - play, play),
+        joint.location, "check the modulus or the stiffness of its contact and the load, with their units");
+  }
 }
 
 std::vector<PlayRank> play_ranks(ClosedMechanism& mechanism,

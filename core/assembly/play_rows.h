@@ -19,6 +19,9 @@ bool gives_tilt(const JointElement& joint);
 /// Whether its block leaves the start to the type by another word than the one that stands for the middle: at rest
 /// under its load.
 bool starts_by_its_load(const JointElement& joint);
+/// Throws `assembly-failed` for a journal that its load presses so deep into its bearing that it stands off by more
+/// than twice its clearance: its loop need not close then.
+void require_borne_loads(const Model& model, const std::vector<InitialOffset>& offsets);
 
 /// By row of the closed mechanism: rows of joints with play that hold shifts are `given` where gives(joint); those that
 /// hold turns alone, as of the tilts of a journal whose block gives none, and all others of these joints are `implied`;

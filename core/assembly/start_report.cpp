@@ -18,7 +18,7 @@ namespace {
 constexpr double noticed = 1e-4;               // of the size, of a radian, of a velocity
 constexpr double noticed_of_play = 1e-3;       // of the clearance: of what its block gives
 constexpr double noticed_pose_in_play = 0.05;  // of the clearance: of a pose
-constexpr double far_turn = 10.0 * std::numbers::pi / 180.0, far_part = 0.1;
+constexpr double far_turn = GivenPoses::far_turn, far_part = GivenPoses::far_part;
 
 constexpr const char* by_load = "place under load";
 
@@ -176,7 +176,7 @@ std::string sentence(const MovedStart& moved) {
   const bool turns = moved.unit == "rad", speed = moved.unit.ends_with("/s");
   const std::string by =
       turns ? fmt::format("{:.3g} deg", degrees(moved.by)) : fmt::format("{:.3g} {}", moved.by, moved.unit);
-  const char* const far = moved.far ? ": that is far, correct it or leave it out" : "";
+  const char* const far = moved.far ? ": that is far, correct it or the joints that lead there" : "";
   if (moved.quantity == "turn") {
     return fmt::format(
         "body '{}' starts turned by {} with all its frames, as joint '{}' holds it: its `pose` gives a "

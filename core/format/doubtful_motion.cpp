@@ -11,6 +11,7 @@
 #include "format/doubtful_body.h"
 #include "format/doubtful_number.h"
 #include "format/doubtful_points.h"
+#include "format/doubtful_threshold.h"
 #include "format/motion_course.h"
 #include "model/force_element.h"
 #include "model/rotation.h"
@@ -218,6 +219,7 @@ class MotionDoubts {
     judge_step(speed, written);
     // Degrees of one term are not those of another, as in '-70 deg - 40*smooth(t, 1 s, 2 s)'.
     const bool united = names_a_unit(written);
+    if (united && angle && doubt_bare_term(written)) return;
     if (united && (!angle || written.node().text.find("rad") != std::string::npos)) return;
     const bool far = angle && settings_.start == 0.0 && std::abs(course.begin) > bare_limit::angle;
     if (far && doubt_angle(written, course.begin)) return;

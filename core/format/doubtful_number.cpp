@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include <fmt/format.h>
 
 #include "component/contact_stiffness.h"
 #include "format/parameter_scope.h"
+#include "format/parameter_tree.h"
 
 namespace freeplay {
 namespace {
@@ -45,6 +47,7 @@ constexpr double shortest_long_step = 2e-3;  // of the run: below, hours are sim
 constexpr double earth_gravity = 9.81;       // [m/s^2], within 3 %: 9.78 to 9.83 on the ground, 10 in schools
 
 bool begins_word(char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '_'; }
+bool is_number_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_'; }
 bool is_word_part(char c) { return begins_word(c) || std::isdigit(static_cast<unsigned char>(c)); }
 
 /// Functions whose result is a plain number, whatever stands in their brackets.
@@ -118,6 +121,36 @@ RoundAngle round_angle(std::string_view text, const Scope& scope) {
   }
 }
 
+/// A number that is a multiple of 180, beside a time with its unit, as in `360*t/2 s`; 0 where there is none.
+double degrees_by_time(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) && (i == 0 || !is_number_part(text[i - 1]));
+    if (!begins) continue;
+    const std::size_t end = std::min(text.find_first_not_of("0123456789.", i), text.size());
+    const double number = std::strtod(std::string(text.substr(i, end - i)).c_str(), nullptr);
+    const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
+    const bool bare = next == text.size() || !begins_word(text[next]);
+    if (bare && number > 0.0 && std::fmod(number, 180.0) == 0.0) return number;
+    i = end;
+  }
+  return 0.0;
+}
+
+/// Largest amount of a function of one variable over a turn of it; 0 of others, and where it has no value.
+double largest_around(const Formula& formula, std::size_t variables) {
+  constexpr int places = 32;
+  double most = 0.0;
+  for (int i = 0; i < places && variables == 1; ++i) {
+    const double x = 2.0 * pi * i / places;
+    try {
+      most = std::max(most, std::abs(formula.at({&x, 1})));
+    } catch (const std::exception&) {
+      return 0.0;  // said where the whole is read
+    }
+  }
+  return most;
+}
+
 bool says_pi(const CheckedValue& written) {
   return any_word(written.node().text,
                   [](std::string_view word, bool parameter) { return !parameter && word == "pi"; });
@@ -179,11 +212,14 @@ void doubt_length(const CheckedValue& written, double value, double scale, doubl
                            written.path(), value, scale, value));
 }
 
-bool names_a_unit(const CheckedValue& written, std::string_view text, Arguments arguments) {
+/// `but`: of no unit of this dimension.
+bool names_a_unit(const CheckedValue& written, std::string_view text, Arguments arguments,
+                  const Dimension* but = nullptr) {
+  const auto counts = [&](const Dimension& dimension) { return but == nullptr || !(dimension == *but); };
   const auto is_unit = [&](std::string_view word, bool parameter) {
-    if (!parameter) return is_unit_name(word);
+    if (!parameter) return is_unit_name(word) && counts(parse_unit(word).dimension);
     const Quantity* quantity = written.reading().scope->find(word);
-    return quantity != nullptr && quantity->kind == DimensionKind::dimensioned;
+    return quantity != nullptr && quantity->kind == DimensionKind::dimensioned && counts(quantity->dimension);
   };
   return any_word(text, is_unit, arguments);
 }
@@ -320,6 +356,8 @@ void doubt_parameters(const ParameterBlock& block, const std::map<std::string, C
     for (std::size_t i = 0; unit == "m" && written.node().is_list() && i < written.node().items.size(); ++i) {
       if (i < value->second.vector.size()) doubt_length(written.item(i), value->second.vector[i], scale, most_lengths);
     }
+    if (unit == "m" && row->kind == ParameterKind::formula && value->second.formula && written.node().is_scalar())
+      doubt_length(written, largest_around(value->second.formula, variables_of(*row).size()), scale, most_lengths);
     if (!std::isfinite(value->second.number) || !written.node().is_scalar() || row->kind != ParameterKind::number)
       continue;
     const double number = value->second.number;
@@ -341,8 +379,10 @@ void doubt_degrees(const CheckedValue& written, std::string_view text) {
     if (std::ranges::none_of(circular_functions, [&](std::string_view name) { return ends_in_word(before, name); }))
       continue;
     const std::string_view angle = text.substr(open, after_bracket(text, open) - open);
-    if (names_a_unit(written, angle, Arguments::read)) continue;
-    const auto [number, in_time] = round_angle(angle, *written.reading().scope);
+    if (names_a_unit(written, angle, Arguments::read, &dimension::time)) continue;
+    const RoundAngle by_time{degrees_by_time(angle), false};
+    const bool says_time = names_a_unit(written, angle, Arguments::read);
+    const auto [number, in_time] = says_time ? by_time : round_angle(angle, *written.reading().scope);
     if (number == 0.0) continue;
     written.warn(
         "doubtful-angle",

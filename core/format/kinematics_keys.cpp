@@ -4,6 +4,7 @@
 #include <string>
 
 #include "format/doubtful_number.h"
+#include "format/doubtful_threshold.h"
 #include "format/pose_table.h"
 #include "model/path_pose.h"
 
@@ -21,7 +22,8 @@ std::optional<int> read_mode(const CheckedValue& value) {
 void doubt_first_angle(const CheckedValue& written, const Expression& angle) {
   Jet at_zero;
   EvaluationFailure ignored;
-  if (angle.evaluate(0.0, at_zero, ignored)) doubt_angle(written, at_zero.value);
+  if (angle.evaluate(0.0, at_zero, ignored) && doubt_angle(written, at_zero.value)) return;
+  doubt_bare_term(written);
 }
 
 /// "'x', 'y' and 'angle'"

@@ -16,6 +16,7 @@
 #include "format/doubtful_motion.h"
 #include "format/doubtful_number.h"
 #include "format/doubtful_rest.h"
+#include "format/doubtful_threshold.h"
 #include "format/draft.h"
 #include "format/driver_section.h"
 #include "format/force_section.h"
@@ -84,6 +85,7 @@ class ModelBuilder {
     if (simulation_) doubt_end(draft_, *simulation_);
     doubt_gears(draft_);
     doubt_loads(draft_);
+    doubt_thresholds(draft_);
     if (!document_.incomplete()) warn_unused_frames(draft_);
     if (diagnostics_.has_errors()) return nullptr;  // with --strict
     keep_frames();

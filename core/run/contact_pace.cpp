@@ -21,9 +21,14 @@ constexpr double nudge = 1e-7;  // of a velocity, for a slope [m/s, rad/s]
 /// times the unit wrench by which the surfaces press, that is g^T W g by the part of g that is a force by a speed.
 double pressing_damping(const JointRef& joint, const JointLayout& layout, JointInput in, const double* mobility) {
   constexpr double all_of_it = std::numeric_limits<double>::infinity();  // nothing is known of friction
-  std::size_t normal = 0;
-  while (normal < layout.channels.size && channel_role(layout, normal) != ChannelRole::normal_force) ++normal;
+  const auto channel_of = [&](ChannelRole role) {
+    std::size_t channel = 0;
+    while (channel < layout.channels.size && channel_role(layout, channel) != role) ++channel;
+    return channel;
+  };
+  const std::size_t normal = channel_of(ChannelRole::normal_force), friction = channel_of(ChannelRole::friction_force);
   if (normal == layout.channels.size) return all_of_it;
+  bool rubs = friction == layout.channels.size;  // nothing is known of it
   const MarkerKinematics second = *in.b;
   std::vector<double> channels(layout.channels.size, 0.0);
   std::array<double, 6> slope{};
@@ -35,8 +40,10 @@ double pressing_damping(const JointRef& joint, const JointLayout& layout, JointI
       Message message;
       if (!joint.observe(in, {}, {channels.data(), channels.size()}, message)) return all_of_it;
       slope[k] += sense * channels[normal] / (2.0 * nudge);
+      rubs = rubs || channels[friction] != 0.0;
     }
   }
+  if (!rubs) return all_of_it;
   double sum = 0.0;
   for (std::size_t r = 0; r < slope.size(); ++r) {
     for (std::size_t c = 0; c < slope.size(); ++c) sum += slope[r] * mobility[slope.size() * r + c] * slope[c];

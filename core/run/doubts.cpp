@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assembly/out_of_reach.h"
+#include "assembly/play_rows.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
 #include "model/element_name.h"
@@ -220,11 +221,12 @@ void RunDoubts::note_damped_peaks() {
     run_.outcome.doubts.push_back(
         {.id = "law-range",
          .level = Trust::doubtful,
-         .message =
-             fmt::format("{}: where it presses hardest, damping makes {:.2g} times of what its stiffness presses with: "
-                         "a law of impact divides by the speed at which the contact began, here next to "
-                         "nothing; start it under its load ('initial: loaded'), or compare with a law without loss",
-                         joint, times),
+         .message = fmt::format(
+             "{}: where it presses hardest, damping makes {:.2g} times of what its stiffness presses with: "
+             "a law of impact divides by the speed at which the contact began, here next to "
+             "nothing; {}compare with a law without loss",
+             joint, times,
+             starts_by_its_load(run_.model.joints[at(j)]) ? "" : "start it under its load ('initial: loaded'), or "),
          .element = joint,
          .value = times,
          .limit = RunWatch::most_damped});

@@ -273,16 +273,20 @@ bool RunFailure::fail_in_switching(const EventStorm::Finding& found) {
 }
 
 // Where a driver asks for what the mechanism cannot do, what failed there says little: neither does what was blamed.
-void RunFailure::explain_dead_point() {
-  if (run_.outcome.status != RunStatus::failed || run_.outcome.exit_code != 4) return;
+bool RunFailure::explain_dead_point() {
+  if (run_.outcome.status != RunStatus::failed || run_.outcome.exit_code != 4) return false;
   auto why = why_out_of_reach(run_.equations->whole(), run_.equations->start().state, run_.outcome.time);
-  if (!why) return explain_singular_position();
+  if (!why) {
+    explain_singular_position();
+    return false;
+  }
   run_.outcome.reason = std::move(*why);
   const bool locked = run_.outcome.reason.ends_with("[locked]");
   for (TrustReason& reason : run_.outcome.doubts) {
     reason.message = fmt::format("the mechanism {}: {}", locked ? "is locked" : "comes to a dead point",
                                  reason.message.substr(0, reason.message.find(cause_words)));
   }
+  return true;
 }
 
 // Before a path leaves what the mechanism reaches, its inputs turn faster and faster, and no step is short enough; so

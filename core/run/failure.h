@@ -53,7 +53,7 @@ class RunFailure {
   bool all_built_in() const;
 
   /// Once the run is over: better reasons than the loop could give.
-  [[gnu::cold]] void explain_dead_point();
+  [[gnu::cold]] bool explain_dead_point();
   [[gnu::cold]] void explain_failure();
 
  private:

@@ -74,8 +74,8 @@ class Recorder {
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.statistics_, self.difference_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_, self.row_,
-            self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_, self.slips_);
+    archive(self.statistics_, self.difference_, self.clearances_, self.ledger_, self.maxima_, self.peaks_, self.storm_,
+            self.row_, self.row_is_known_, self.next_row_, self.contact_rows_, self.contact_peaks_, self.slips_);
   }
 
  private:

@@ -119,17 +119,20 @@ const Outcome& Simulation::Impl::finish() {
   recorder.write_open_contacts();
   outcome.wall_seconds = end.spent();
   context.watch.note_exchanged(context.energy.exchanged());
-  failure.explain_dead_point();
+  const bool at_dead_point = failure.explain_dead_point();
   if (hooks->profile != nullptr) hooks->profile->stop();
   context.evaluations.profile = nullptr;
   outcome.iterations = context.solver.iterations();
   outcome.factorizations = context.solver.factorizations();
   doubts.format_warnings();
   doubts.note_unused_play();
-  doubts.note_damped_peaks();
-  doubts.judge_motion();
-  doubts.note_lasting_blows();
-  adaptive.doubt_steps();
+  // Of forces and steps that grow without bound towards a dead point nothing else is to be said.
+  if (!at_dead_point) {
+    doubts.note_damped_peaks();
+    doubts.judge_motion();
+    doubts.note_lasting_blows();
+    adaptive.doubt_steps();
+  }
   failure.explain_failure();
   corners.format_jumps();
   corners.format_unresolved();

@@ -94,8 +94,8 @@ void SlowSteps::judge_contacts(double mean, double all) {
       pace.slides ? "brings sliding to rest"
                   : "is damped " + (turn > 0.0 ? times : "more than enough to stop") + " it from swinging,";
   sentence_ = fmt::format(
-      "steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}; {} lets the last of them, of "
-      "{:.2g} s, be no longer: {} {} with a time constant of {:.2g} s; {}, or steps of one size",
+      "steps of {:.2g} s at t = {:.6g} s, of which the whole run would take {:.2g}; {} limits the last of them to "
+      "{:.2g} s: {} {} with a time constant of {:.2g} s; {}, or steps of one size",
       mean, run_.accepted.t(), all, element_, step, contacts_.words(pace), much, 1.0 / pace.damping, remedy_for(pace));
 }
 

@@ -311,7 +311,7 @@ class Digits(ProgramTest):
         out, _ = self.freeplay("run", "m.yaml", "--out", "r", "--force")
         self.assertRegex(out, r"\n  motor +\S+ \+- \S+ k?N\*m +\S+ \+- \S+ N\*m\n")
         self.assertRegex(out, r"\n  wrist +\S+ \+- \S+ kN +\d+ \+- \d+ +\S+ \+- \S+ %")
-        self.assertIn("another step or build may change a figure by so much, another start by more (--repeat N)\n", out)
+        self.assertIn("another step, accuracy or build may change a figure by so much, another start by more (--repeat N)\n", out)
 
     def test_a_model_without_contacts_has_all_digits(self):
         out, _ = self.freeplay("run", mechanism("four-bar"))

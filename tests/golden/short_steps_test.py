@@ -78,8 +78,8 @@ class ShortSteps(ProgramTest):
     def test_a_contact_that_damps_too_much_for_longer_steps_is_named(self):
         self.write("m.yaml", DROP)
         out, err = self.freeplay("run", "m.yaml", "--out", "r")
-        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' lets the last "
-                              r"of them, of \S+ s, be no longer: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
+        self.assertRegex(err, r"warning: steps of \S+ s at t = \S+ s, of which the whole run would take \S+; joint 'hole' limits the last "
+                              r"of them to \S+ s: its contact \(law 'flores', begun at \S+ m/s\) is damped .*\('initial: loaded'\)")
         reasons = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
         self.assertIn(("short-steps", "joint 'hole'"), [(r["id"], r["element"]) for r in reasons])
         self.assertIn("trust: doubtful", out)
@@ -114,7 +114,7 @@ class ShortSteps(ProgramTest):
         """A law of contact without damping: what is fast is the friction, mu N/(m vs)."""
         self.write("m.yaml", RUB)
         err = self.freeplay("run", "m.yaml", "--out", "r")[1]
-        said = re.search(r"joint 'hole' lets the last of them, of (\S+) s, be no longer: its friction \(law 'coulomb-tanh'\) brings "
+        said = re.search(r"joint 'hole' limits the last of them to (\S+) s: its friction \(law 'coulomb-tanh'\) brings "
                          r"sliding to rest with a time constant of (\S+) s; .*'vs'", err)
         self.assertTrue(said, err)
         self.assertNotIn("initial: loaded", err)

@@ -202,7 +202,7 @@ CASES = {
         (0, driven("value: t", "value: exp(-((t - 0.05)/1e-4)^2)"), RUN),
     "... '...': it changes at t = ... s for some ... s, less than a millionth of the run, which steps may go over; ...":
         (0, PULSE.replace("1000*smooth(t, 0.5, 0.501)*(1-smooth(t, 0.501, 0.502))", "1/(1 + ((t - 0.7)/1e-8)^2)").replace("step: 5 ms", "accuracy: 1 um"), RUN),
-    "steps of ... s at t = ... s, of which the whole run would take ...; joint '...' lets the last of them, of ... s, be no longer: its ... is damped ...":
+    "steps of ... s at t = ... s, of which the whole run would take ...; joint '...' limits the last of them to ... s: its ... is damped ...":
         (0, TOUCHING, RUN),
     "--verify: THE RUNS DISAGREE: ...": (7, PULSE, RUN + ["--verify"]),
     "--verify: the second run was given up at ... s after ... steps": (0, STIFF, RUN + ["--verify"]),
@@ -250,6 +250,9 @@ CASES = {
         (0, driven("drivers:", "  pin: {type: revolute, between: [rod/tip, bar]}\n  hand: {type: revolute, between: [bar/tip, sled]}\n"
                                "  guide: {type: prismatic, between: [rod, sled]}\ndrivers:")
          .replace("joints:", "  bar: {mass: 1 kg, inertia: 0.1, frames: {tip: [0.5, 0]}, pose: {angle: 2}}\n  sled: {mass: 1 kg, inertia: 0.1}\njoints:"), RUN),
+    "body '...' cannot move, though the mechanism can: ...; check at which frames they stand [locked]":
+        (0, driven("drivers:", "  foot: {type: revolute, between: [ground, stay]}\n  head: {type: revolute, between: [stay/tip, ground/far]}\ndrivers:")
+         .replace("joints:", "  stay: {mass: 1 kg, inertia: 0.1, frames: {tip: [0.5, 0]}, pose: {angle: 40 deg}}\nframes: {ground/far: [0.5, 0]}\njoints:"), RUN),
     "'...' does nothing: none of its numbers that make a force is given; ...":
         (0, pendulum("initial:", "forces:\n  one: %s\ninitial:" % SPRING.replace(", stiffness: 10", "")), RUN),
     "'...' never moves: it turns in its bearing on ground alone, and no gear, driver, force or start turns it; ... [left-free]":

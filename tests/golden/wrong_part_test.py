@@ -174,6 +174,72 @@ joints:
 initial: {speeds: {guide: 1}}
 simulation: {end: %s, accuracy: 1 um}
 """
+# A knuckle-joint press.
+PRESS = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {head: [450 mm, 300 mm], slide: {position: [450 mm, 0], angle: -90 deg}}}
+  crank: {mass: 8 kg, inertia: 0.03, frames: {pin: [60 mm, 0]}}
+  rod: {mass: 5 kg, inertia: 0.06, com: [180 mm, 0], frames: {end: [360 mm, 0]}, pose: {position: [0, -60 mm], angle: 23 deg}}
+  upper: {mass: 6 kg, inertia: 0.035, com: [125 mm, 0], frames: {knee: [250 mm, 0]}, pose: {position: [450 mm, 300 mm], angle: -118 deg}}
+  lower: {mass: 6 kg, inertia: 0.035, com: [125 mm, 0], frames: {end: [250 mm, 0]}, pose: {position: [332 mm, 80 mm], angle: -62 deg}}
+  ram: {mass: 30 kg, inertia: 0.15, pose: {position: [450 mm, -141 mm], angle: -90 deg}}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  pin: {type: revolute, between: [crank/pin, rod]}
+  head: {type: revolute, between: [ground/head, upper]}
+  knee: {type: revolute, between: [rod/end, upper/knee]}
+  knuckle:
+    type: revolute
+    bearing: lower
+    journal: upper/knee
+    clearance: {bearing_radius: 25 mm, radial_clearance: 60 um, length: 60 mm, material: {E: 207 GPa, nu: 0.3}, contact: {law: flores, restitution: 0.7}, initial: loaded}
+  wrist: {type: revolute, between: [lower/end, ram]}
+  guide: {type: prismatic, between: [ground/slide, ram]}
+drivers: {motor: {joint: main, kind: velocity, value: 60 rpm}}
+forces: {blank: {type: force, at: ram, value: [0, "15 kN*smooth(-body.ram.y, 170 mm, 190 mm)"]}}
+initial: {joints: {main: -90 deg}}
+simulation: {end: 0.7 s, accuracy: 2 um, output: {interval: 1 ms}}
+"""
+SWUNG = PRESS.replace("initial: {joints: {main: -90 deg}}\n", "").replace(
+    "kind: velocity, value: 60 rpm", 'kind: angle, value: "-90 deg + 20 deg*sin(t*3 rad/s)"')
+# A valve whose cam dwells at the start.
+VALVE = """freeplay: 1
+bodies:
+  ground: {frames: {bore: {position: [0, 0], angle: 90 deg}, shaft: [30 mm, 220 mm], stem: {position: [75 mm, 150 mm], angle: 90 deg}, seat: [75 mm, 180 mm]}}
+  cam: {mass: 0.6, inertia: 1.2e-4}
+  tappet: {mass: 55 g, inertia: 1e-5, frames: {axis: {angle: 90 deg}, cup: [0, 50 mm]}, pose: {position: [0, 18 mm]}}
+  rod: {mass: 40 g, inertia: 8e-5, com: [0, 76 mm], frames: {ball: [0, 152 mm]}, pose: {position: [0, 68 mm]}}
+  rocker: {mass: 110 g, inertia: 4.5e-5, com: [4 mm, 2 mm], frames: {cup: [-30 mm, 0], nose: [45 mm, 0]}, pose: {position: [30 mm, 220 mm]}}
+  valve: {mass: 75 g, inertia: 6e-5, com: [0, -60 mm], frames: {axis: {angle: 90 deg}, top: [0, 0]}, pose: {position: [75 mm, 220 mm]}}
+joints:
+  camshaft: {type: revolute, between: [ground, cam]}
+  bore: {type: prismatic, between: [ground/bore, tappet/axis]}
+  follower: {type: point-on-curve, form: polar, between: [cam, tappet], curve: "18 mm + 5 mm*(smooth(x, 120 deg, 180 deg) - smooth(x, 180 deg, 240 deg))"}
+  lower: {type: revolute, between: [tappet/cup, rod]}
+  upper: {type: revolute, between: [rod/ball, rocker/cup]}
+  shaft: {type: revolute, between: [rocker, ground/shaft]}
+  contact: {type: point-on-line, between: [valve/top, rocker/nose]}
+  stem: {type: prismatic, between: [ground/stem, valve/axis]}
+drivers: {belt: {joint: camshaft, kind: velocity, value: 1200 rpm}}
+forces: {spring: {type: spring-damper, between: [ground/seat, valve/top], stiffness: 25 kN/m, damping: 8 N*s/m, free_length: 50 mm}}
+initial: {joints: {camshaft: 180 deg}}
+simulation: {end: 30 ms, accuracy: 0.2 um}
+"""
+SLIPS += [
+    (PRESS, "journal: upper/knee", "journal: upper", "locked", "bodies 'lower', 'ram' cannot move, though the mechanism can: joints 'knuckle', 'wrist', 'guide' hold them"),
+    (PRESS, "170 mm, 190 mm", "170, 190", "doubtful-length", "compares 'body.ram.y' with 170 m in a mechanism of"),
+    (PRESS, "smooth(-body.ram.y, 170 mm, 190 mm)", "if(body.ram.y < -170, 1, 0)", "doubtful-length", "write '170 mm'"),
+    (PRESS, "smooth(-body.ram.y, 170 mm, 190 mm)", "if(joint.main.angle > 30, 1, 0)", "doubtful-angle", "compares 'joint.main.angle' with 30 rad, 4.77 turns"),
+    (PRESS, "smooth(-body.ram.y, 170 mm, 190 mm)", "max(joint.head.angle - 40, 0)", "doubtful-angle", "write '40 deg'"),
+    (PRESS, "smooth(-body.ram.y, 170 mm, 190 mm)", "sin(360*t/2 s)", "doubtful-angle", "takes a sine, cosine or tangent of 360 rad"),
+    (SWUNG, "-90 deg + 20", "-90 + 20", "doubtful-angle", "has a term of 90 rad, 14.3 turns"),
+    (SWUNG, "20 deg*sin", "20*sin", "doubtful-angle", "has a term of 20 rad"),
+]
+OPEN += [
+    (PRESS, "207 GPa", "207", "joint 'knuckle' has no start: its load presses it"),
+    (VALVE, "18 mm + 5 mm*", "18 + 5*", "joint 'follower' stays open"),
+]
 
 
 class WrongPart(ProgramTest):
@@ -197,9 +263,15 @@ class WrongPart(ProgramTest):
                 self.assertIn(words, "".join(found))
 
     def test_what_is_meant_is_not_doubted(self):
-        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN):
+        turned = PRESS.replace("smooth(-body.ram.y, 170 mm, 190 mm)", "if(joint.main.angle > 30 rad, 100, 10)*smooth(joint.head.angle, 20 deg, 40 deg)")
+        swings = SWUNG.replace("20 deg*sin(t*3 rad/s)", "0.4*sin(t*3 rad/s) + 0.2*smooth(t, 0 s, 360 s)")
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, turned, swings):
             with self.subTest(text[:300]):
                 self.assertEqual([], self.messages(text))
+
+    def test_a_curve_in_metres_is_doubted_where_nothing_can_be_put_together(self):
+        found = self.messages(VALVE.replace("18 mm + 5 mm*", "18 + 5*"), code=3)
+        self.assertTrue(any(one == "doubtful-length" and "'joints.follower.curve' is 23 m" in message for one, message in found), found)
 
     def verdict(self, text):
         self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")

@@ -1,4 +1,4 @@
-#include "assembly/locked_guide.h"
+#include "assembly/locked_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@
 
 #include <Eigen/Core>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "assembly/closed_mechanism.h"
 #include "assembly/continuation.h"
 #include "assembly/dead_point.h"
+#include "assembly/given_poses.h"
 #include "assembly/left_free.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
@@ -24,7 +26,9 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double second_position = 0.05;  // rad, or of the size of the model
+// Steps from position to position, rad or of the size of the model; of the latter ones so many that a cam turns once.
+constexpr double second_position = 0.05, further_position = 0.3;
+constexpr int further_positions = 21;
 
 /// Groups of bodies, the last of them ground, that grow together.
 class BodyGroups {
@@ -42,9 +46,9 @@ class BodyGroups {
   std::vector<std::size_t> of_;
 };
 
-class Guides {
+class Stills {
  public:
-  Guides(const System& system, const State& start) : mechanism_(system), model_(mechanism_.model()) {
+  Stills(const System& system, const State& start) : mechanism_(system), model_(mechanism_.model()) {
     mechanism_.stand_at(system, start);
     for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
       const int row = mechanism_.system.layout().driver_row(d);
@@ -57,12 +61,27 @@ class Guides {
     int guide = 0;
     std::vector<int> loop;
   };
-  std::vector<Locked> find() {
-    std::vector<Locked> found = here();
-    if (found.empty() || motions_.cols() == 0) return found;
-    if (!move_on()) return {};
-    const std::vector<Locked> there = here();
-    std::erase_if(found, [&](const Locked& one) { return std::ranges::count(there, one.guide, &Locked::guide) == 0; });
+  struct Found {
+    std::vector<Locked> guides;
+    std::vector<BodyId> bodies;
+    bool any() const { return !guides.empty() || !bodies.empty(); }
+    void keep_those_of(const Found& other) {
+      std::erase_if(
+          guides, [&](const Locked& one) { return std::ranges::count(other.guides, one.guide, &Locked::guide) == 0; });
+      std::erase_if(bodies, [&](BodyId one) { return std::ranges::count(other.bodies, one) == 0; });
+    }
+  };
+  Found find() {
+    Found found = here();
+    along_ = VectorXd::Zero(motions_.rows());
+    for (Eigen::Index c = 0; c < motions_.cols(); ++c) {
+      const double share = static_cast<double>(c + 1) * 0.6180339887498949;
+      along_ += (0.5 + share - std::floor(share)) * motions_.col(c);
+    }
+    for (int k = 0; k <= further_positions && found.any() && motions_.cols() > 0; ++k) {
+      if (!move_on(k == 0 ? second_position : further_position)) return k == 0 ? Found{} : found;
+      found.keep_those_of(here());
+    }
     return found;
   }
   bool moves() const { return motions_.cols() > 0; }
@@ -93,7 +112,7 @@ class Guides {
     return rate.norm() <= counts_as_motion * size;
   }
 
-  std::vector<Locked> here() {
+  Found here() {
     const ClosedMechanism::Rows rows = mechanism_.position_rows();
     const Eigen::Index columns = mechanism_.system.layout().nv();
     motions_ = rows.matrix.rows() > 0 ? null_space(MatrixXd(rows.matrix)) : MatrixXd::Identity(columns, columns);
@@ -101,7 +120,7 @@ class Guides {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (stands_still(j)) still.push_back(j);
     }
-    std::vector<Locked> found;
+    Found found{{}, still_bodies()};
     for (const int j : still) {
       if (!is_guide(j)) continue;
       BodyGroups without(model_.bodies.size());
@@ -115,7 +134,7 @@ class Guides {
         if (without.together(bodies_of(other).first, a) && without.together(bodies_of(other).second, a))
           one.loop.push_back(other);
       }
-      found.push_back(std::move(one));
+      found.guides.push_back(std::move(one));
     }
     return found;
   }
@@ -124,25 +143,40 @@ class Guides {
     return {body_of(model_.joints[at(j)].marker_a), body_of(model_.joints[at(j)].marker_b)};
   }
 
-  /// A little along all motions at once.
-  bool move_on() {
-    VectorXd along = VectorXd::Zero(motions_.rows());
-    for (Eigen::Index c = 0; c < motions_.cols(); ++c) {
-      const double share = static_cast<double>(c + 1) * 0.6180339887498949;
-      along += (0.5 + share - std::floor(share)) * motions_.col(c);
+  /// Bodies that no motion moves, but for those that joints without a freedom fix to ground.
+  std::vector<BodyId> still_bodies() const {
+    const int width = mechanism_.system.layout().body_velocities();
+    BodyGroups fixed(model_.bodies.size());
+    for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
+      if (mechanism_.system.layout().rows(j).size == width) fixed.unite(bodies_of(j).first, bodies_of(j).second);
     }
+    std::vector<BodyId> found;
+    for (BodyId b = 0; b < static_cast<BodyId>(model_.bodies.size()); ++b) {
+      if (fixed.together(b, ground)) continue;
+      if (motions_.cols() > 0 && motions_.middleRows(width * b, width).norm() <= counts_as_motion) found.push_back(b);
+    }
+    return found;
+  }
+
+  /// Along the motions at once, and from position to position in the same direction.
+  bool move_on(double far) {
+    const VectorXd ahead = motions_ * (motions_.transpose() * along_);
     const std::vector<double> q(mechanism_.state.q().begin(), mechanism_.state.q().end());
+    std::vector<double> increment(at(static_cast<int>(ahead.size())));
     for (const double sign : {1.0, -1.0}) {
-      std::vector<double> increment(at(static_cast<int>(along.size())));
       double most = 0.0;
       for (int i = 0; i < static_cast<int>(increment.size()); ++i) {
-        increment[at(i)] = along[i];
+        increment[at(i)] = ahead[i];
         const bool turn = mechanism_.system.coordinates().is_turn(i);
-        most = std::max(most, std::abs(along[i]) / (turn ? 1.0 : mechanism_.system.size()));
+        most = std::max(most, std::abs(ahead[i]) / (turn ? 1.0 : mechanism_.system.size()));
       }
-      for (double& part : increment) part *= sign * second_position / most;
+      if (!(most > 0.0)) return false;
+      for (double& part : increment) part *= sign * far / most;
       mechanism_.system.coordinates().retract(q, increment, mechanism_.state.q());
-      if (mechanism_.holds(mechanism_.converge())) return true;
+      if (mechanism_.holds(mechanism_.converge())) {
+        along_ = sign * ahead;
+        return true;
+      }
       std::ranges::copy(q, mechanism_.state.q().begin());
     }
     return false;
@@ -151,6 +185,7 @@ class Guides {
   ClosedMechanism mechanism_;
   const Model& model_;
   MatrixXd motions_;
+  VectorXd along_;
 };
 
 /// Does a driver or a start speed move the bodies that hang together with those of a joint other than by ground?
@@ -181,19 +216,68 @@ bool is_moved(const Model& model, const JointElement& joint) {
   return false;
 }
 
+/// Joints, not springs or gears, that hold a body.
+std::vector<int> joints_of(BodyId body, const Model& model) {
+  std::vector<int> found;
+  for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
+    const JointElement& joint = model.joints[at(j)];
+    if (is_force_element(joint) || joint.gear >= 0) continue;
+    if (model.markers[at(joint.marker_a)].body == body || model.markers[at(joint.marker_b)].body == body)
+      found.push_back(j);
+  }
+  return found;
+}
+
+/// Of bodies that cannot move: the first that is far from the pose that the file gives, else one with a loose joint.
+BodyId suspect(const std::vector<BodyId>& bodies, const GivenPoses& given, std::span<const double> q,
+               const System& system) {
+  for (const BodyId b : bodies) {
+    if (given.shift(b, q) > GivenPoses::far_part * system.size() || std::abs(given.turn(b, q)) > GivenPoses::far_turn)
+      return b;
+  }
+  for (const BodyId b : bodies) {
+    for (const int j : joints_of(b, system.model())) {
+      if (system.model().joints[at(j)].has_play) return b;
+    }
+  }
+  return ground;
+}
+
+void doubt_bodies(const System& system, std::span<const double> q, std::vector<BodyId> bodies, Structure& structure) {
+  const Model& model = system.model();
+  const BodyId first = suspect(bodies, GivenPoses(system), q, system);
+  if (first == ground || structure.doubts.size() >= Structure::most_doubts) return;
+  std::vector<int> joints;
+  std::vector<std::string> names;
+  for (const BodyId b : bodies) {
+    names.push_back(fmt::format("'{}'", model.bodies[at(b)].name));
+    for (const int j : joints_of(b, model)) {
+      if (std::ranges::count(joints, j) == 0) joints.push_back(j);
+    }
+  }
+  const Body& body = model.bodies[at(first)];
+  structure.doubts.push_back(
+      {"locked",
+       fmt::format("{} {} cannot move, though the mechanism can: {} hold {}; check at which frames they stand",
+                   names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "), joint_names(joints, model),
+                   names.size() == 1 ? "it" : "them"),
+       body.location, std::max(character_count(body.name), 1)});
+}
+
 }  // namespace
 
-void doubt_guides(const System& system, const State& start, Structure& structure) {
+void doubt_locked(const System& system, const State& start, Structure& structure) {
   const Model& model = system.model();
-  const auto is_guide = [](const JointElement& joint) {
-    return !is_force_element(joint) && joint.gear < 0 && joint.ideal_layout().coordinate == Coordinate::position;
-  };
   if (static_cast<int>(model.bodies.size()) * (model.space == Space::planar ? 3 : 6) > most_followed_velocities) return;
-  if (std::ranges::none_of(model.joints, is_guide)) return;
-  Guides guides(system, start);
-  for (const Guides::Locked& one : guides.find()) {
+  Stills stills(system, start);
+  Stills::Found found = stills.find();
+  for (const Stills::Locked& one : found.guides) {
     const JointElement& guide = model.joints[at(one.guide)];
     if (!is_moved(model, guide) || structure.doubts.size() >= Structure::most_doubts) continue;
+    for (const int j : one.loop) {
+      for (const int marker : {model.joints[at(j)].marker_a, model.joints[at(j)].marker_b})
+        std::erase(found.bodies, model.markers[at(marker)].body);
+    }
     const std::string own = guide.name.substr(guide.name.rfind('.') + 1);
     std::vector<int> others = one.loop;
     std::erase(others, one.guide);
@@ -201,9 +285,10 @@ void doubt_guides(const System& system, const State& start, Structure& structure
         {"locked",
          fmt::format("joint '{}' cannot move: with {} it closes a loop in which nothing can{}; let it stand on another "
                      "body, or turn its axis",
-                     guide.name, joint_names(others, model), guides.moves() ? "" : " (the mechanism has no freedom)"),
+                     guide.name, joint_names(others, model), stills.moves() ? "" : " (the mechanism has no freedom)"),
          guide.location, std::max(character_count(own), 1)});
   }
+  doubt_bodies(system, start.q(), std::move(found.bodies), structure);
 }
 
 }  // namespace freeplay

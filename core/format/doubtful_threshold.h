@@ -1,0 +1,16 @@
+// DoubtfulThreshold: numbers without a unit that stand beside an angle or a place that never comes there.
+#pragma once
+
+#include "format/draft.h"
+
+namespace freeplay {
+
+/// Warns of a number without a unit beside a channel alone, as in `joint.door.angle > 15`, `body.ram.y - 80` and
+/// `smooth(joint.door.angle, 20, 30)`: `doubtful-angle` beyond a turn, `doubtful-length` beyond 50 sizes of the model.
+void doubt_thresholds(const Draft& draft);
+
+/// `doubtful-angle` for a term of an angle that has no unit, as the number of `45 + 10 deg*sin(...)` or of
+/// `20*smooth(...)`: beyond a turn, and round. True after a message.
+bool doubt_bare_term(const CheckedValue& written);
+
+}  // namespace freeplay
