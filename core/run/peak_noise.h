@@ -15,8 +15,8 @@
 namespace freeplay {
 
 /// Impacts make small differences grow: what another step, machine or start changes by little changes the impacts that
-/// follow more and more. Two estimates, both without a second run, for each group of bodies that joints, gears and
-/// springs hold together:
+/// follow more and more. So do motions without impacts, of which SmallDifference says how much they do. Two estimates,
+/// both without a second run, for each group of bodies that joints, gears and springs hold together:
 ///
 /// 1. Growth. Of a difference of half a hundredth of the play, what has come of it at the time of a peak is
 ///    g = min(1, 0.005 (2.7^n - 1)) of all that chance can do. n counts the impacts so far, in the joint of the group
@@ -39,8 +39,8 @@ namespace freeplay {
 ///
 /// The noise is the peak at most: then its power of ten is all that is known.
 ///
-/// Without impacts or ringing the noise is zero, and so is that of loads that the model gives. The cost is a comparison
-/// for each value and step.
+/// Where differences do not grow and nothing rings the noise is zero, and so is that of loads that the model gives. The
+/// cost is a comparison for each value and step.
 class PeakNoise {
  public:
   [[gnu::cold]] PeakNoise(const Model& model, const PeakValues& places);

@@ -19,6 +19,7 @@ constexpr double irregular = 3.0;        // mean exponential growth: clearly mor
 
 // Steps, by the time in which differences swing.
 constexpr double wanted = 0.4, longest = 1.0;
+constexpr double far_longer = 4.0;       // than the step before, which says nothing of it
 constexpr int most_long_steps = 4;       // in a row
 constexpr double shown_slower = 1.2;     // from one such time to the next, as the shortest shows now and then
 constexpr double long_ago = 1e6;         // of the longest
@@ -102,6 +103,7 @@ bool SmallDifference::begin(const State& accepted) {
 // order, a corrector of the fourth, each with accelerations found anew: without those of the corrector damped springs
 // would make it unstable.
 bool SmallDifference::step(const State& accepted, double dt) {
+  if (dt > far_longer * passed_[0]) forget();
   const double before = passed_[0], span = passed_[0] + passed_[1];
   const double h = dt, hh = h * h;
   for (std::size_t i = 0; i < change_.size(); ++i) {
