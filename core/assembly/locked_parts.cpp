@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -29,6 +30,7 @@ using Eigen::VectorXd;
 // Steps from position to position, rad or of the size of the model; of the latter ones so many that a cam turns once.
 constexpr double second_position = 0.05, further_position = 0.3;
 constexpr int further_positions = 21;
+constexpr double one_place = 1e-9;  // of the size of the model
 
 /// Groups of bodies, the last of them ground, that grow together.
 class BodyGroups {
@@ -228,22 +230,49 @@ std::vector<int> joints_of(BodyId body, const Model& model) {
   return found;
 }
 
-/// Of bodies that cannot move: the first that is far from the pose that the file gives, else one with a loose joint.
+/// A joint of the body that stands on a body that does move, at the very place of another of its joints.
+bool stands_at_a_pivot(BodyId body, const std::vector<BodyId>& still, const System& system) {
+  const Model& model = system.model();
+  for (const int j : joints_of(body, model)) {
+    const JointElement& joint = model.joints[at(j)];
+    for (const int marker : {joint.marker_a, joint.marker_b}) {
+      const Marker& here = model.markers[at(marker)];
+      if (here.body == ground || std::ranges::count(still, here.body) > 0) continue;
+      for (const int other : joints_of(here.body, model)) {
+        const JointElement& one = model.joints[at(other)];
+        const Marker& a = model.markers[at(one.marker_a)];
+        const Marker& there = a.body == here.body ? a : model.markers[at(one.marker_b)];
+        const double apart = std::hypot(there.position[0] - here.position[0], there.position[1] - here.position[1],
+                                        there.position[2] - here.position[2]);
+        if (other != j && apart <= one_place * system.size()) return true;
+      }
+    }
+  }
+  return false;
+}
+
+/// Of bodies that cannot move: the first that is far from the pose that the file gives, else one with a loose joint, or
+/// one that hangs on the pivot of what moves.
 BodyId suspect(const std::vector<BodyId>& bodies, const GivenPoses& given, std::span<const double> q,
                const System& system) {
-  for (const BodyId b : bodies) {
-    if (given.shift(b, q) > GivenPoses::far_part * system.size() || std::abs(given.turn(b, q)) > GivenPoses::far_turn)
-      return b;
-  }
-  for (const BodyId b : bodies) {
-    for (const int j : joints_of(b, system.model())) {
-      if (system.model().joints[at(j)].has_play) return b;
-    }
+  const auto is_far = [&](BodyId b) {
+    return given.shift(b, q) > GivenPoses::far_part * system.size() ||
+           std::abs(given.turn(b, q)) > GivenPoses::far_turn;
+  };
+  const auto is_loose = [&](BodyId b) {
+    return std::ranges::any_of(joints_of(b, system.model()),
+                               [&](int j) { return system.model().joints[at(j)].has_play; });
+  };
+  const auto on_pivot = [&](BodyId b) { return stands_at_a_pivot(b, bodies, system); };
+  for (const std::function<bool(BodyId)>& wrong : {std::function<bool(BodyId)>(is_far), {is_loose}, {on_pivot}}) {
+    const auto found = std::ranges::find_if(bodies, wrong);
+    if (found != bodies.end()) return *found;
   }
   return ground;
 }
 
-void doubt_bodies(const System& system, std::span<const double> q, std::vector<BodyId> bodies, Structure& structure) {
+void doubt_bodies(const System& system, std::span<const double> q, const std::vector<BodyId>& bodies,
+                  Structure& structure) {
   const Model& model = system.model();
   const BodyId first = suspect(bodies, GivenPoses(system), q, system);
   if (first == ground || structure.doubts.size() >= Structure::most_doubts) return;
@@ -288,7 +317,7 @@ void doubt_locked(const System& system, const State& start, Structure& structure
                      guide.name, joint_names(others, model), stills.moves() ? "" : " (the mechanism has no freedom)"),
          guide.location, std::max(character_count(own), 1)});
   }
-  doubt_bodies(system, start.q(), std::move(found.bodies), structure);
+  doubt_bodies(system, start.q(), found.bodies, structure);
 }
 
 }  // namespace freeplay

@@ -297,7 +297,10 @@ class MotionDoubts {
 
   void judge_slide(const Driver& driver, const Course& course, const CheckedValue& written) const {
     const double range = course.high - course.low, scale = draft_.length_scale;
-    if (names_a_unit(written)) return;
+    if (names_a_unit(written)) {
+      if (driver.kind == DriverKind::position) doubt_bare_place(written, scale);
+      return;
+    }
     if (driver.kind != DriverKind::position) {
       return doubt_slide_speed(written, std::max(std::abs(course.low), std::abs(course.high)));
     }

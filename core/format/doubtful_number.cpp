@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "component/contact_stiffness.h"
+#include "format/doubtful_threshold.h"
 #include "format/parameter_scope.h"
 #include "format/parameter_tree.h"
 
@@ -380,9 +381,12 @@ void doubt_degrees(const CheckedValue& written, std::string_view text) {
       continue;
     const std::string_view angle = text.substr(open, after_bracket(text, open) - open);
     if (names_a_unit(written, angle, Arguments::read, &dimension::time)) continue;
-    const RoundAngle by_time{degrees_by_time(angle), false};
     const bool says_time = names_a_unit(written, angle, Arguments::read);
-    const auto [number, in_time] = says_time ? by_time : round_angle(angle, *written.reading().scope);
+    RoundAngle found = round_angle(angle, *written.reading().scope);
+    if (says_time) found = {degrees_by_time(angle), false};
+    const double swing = bare_swing(angle.substr(1, angle.size() - 2));
+    if (found.number == 0.0 && swing > bare_limit::angle && std::fmod(swing, 5.0) == 0.0) found = {swing, false};
+    const auto [number, in_time] = found;
     if (number == 0.0) continue;
     written.warn(
         "doubtful-angle",

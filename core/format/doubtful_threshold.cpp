@@ -212,4 +212,25 @@ bool doubt_bare_term(const CheckedValue& written) {
   return false;
 }
 
+void doubt_bare_place(const CheckedValue& written, double scale) {
+  if (!written.node().is_scalar() || !(scale > 0.0)) return;
+  for (const std::string_view term : terms_of(written.node().text)) {
+    const double factor = bare_factor(term), number = std::isfinite(factor) ? factor : bare_number(term);
+    if (!(std::abs(number) > bare_limit::bearing * scale)) continue;
+    written.warn(
+        "doubtful-length",
+        fmt::format("'{0}' has a term of {1:.6g} m where the lengths of the mechanism are about {2:.3g} m: write "
+                    "'{1:.6g} mm' if millimetres are meant, else '{1:.6g} m'",
+                    written.path(), number, scale));
+    return;
+  }
+}
+
+double bare_swing(std::string_view sum) {
+  for (const std::string_view term : terms_of(sum)) {
+    if (const double factor = bare_factor(term); std::isfinite(factor)) return factor;
+  }
+  return NAN;
+}
+
 }  // namespace freeplay

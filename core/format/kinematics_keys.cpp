@@ -64,6 +64,7 @@ std::optional<FramePath> read_path(Draft& draft, const CheckedValue& value, bool
     path.functions[i] = component->time_function(turns ? dimension::angle : dimension::length);
     path.text[i] = component->node().text;
     if (turns && path.functions[i]) doubt_first_angle(*component, *path.functions[i]);
+    if (!turns) doubt_bare_place(*component, draft.length_scale);
     if (in_run && path.functions[i]) draft.timed.push_back({*component, path.functions[i]->time_parts(), false, false});
     good = good && path.functions[i].has_value();
   }

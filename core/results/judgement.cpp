@@ -91,11 +91,15 @@ void judge_end(const RunRecord& record, Verdict& verdict) {
          .value = outcome.time,
          .limit = settings.end});
   }
-  if (outcome.status != RunStatus::failed || verdict.level() == Trust::bad) return;
-  verdict.add(
-      {.id = "run-failed",
-       .level = Trust::bad,
-       .message = fmt::format("the run failed at t = {:.9g} s, and what came just before may be wrong", outcome.time)});
+  if (outcome.status != RunStatus::failed) return;
+  // A cause with a name of its own explains what else is bad.
+  const bool named = outcome.reason.ends_with(']');
+  if (!named && verdict.level() == Trust::bad) return;
+  verdict.lead({.id = "run-failed",
+                .level = Trust::bad,
+                .message = named ? "the run failed: " + outcome.reason
+                                 : fmt::format("the run failed at t = {:.9g} s, and what came just before may be wrong",
+                                               outcome.time)});
 }
 
 void judge_energy(const RunRecord& record, Verdict& verdict) {

@@ -20,7 +20,7 @@ constexpr double slow_load = 0.5;       // of a short load
 constexpr double slow_bend = 0.4;       // of a motion whose powers are integrated and whose forces have their peaks
 constexpr double coarsest = 0.5;        // of the shortest change: no step up to there goes over one
 constexpr double finest = 1.0 / 32.0;   // of it: where a change begins it is taken in parts as small as that
-constexpr double hidden_after = 64.0, hidden_before = 8.0;
+constexpr double hidden_after = 64.0, hidden_before = 8.0, hidden_jump = 16.0;
 constexpr int seen_degree = 4;                           // of polynomials that integrators take as they are
 constexpr double quick_load = 0.1, quick_motion = 0.01;  // of the run
 constexpr double longer = 4.0;                           // the next step to look at, of one that had to be shortened
@@ -300,6 +300,8 @@ bool InputActivity::acts_quickly(double t) {
 // hides.
 double InputActivity::hidden_error(double t, double dt) const {
   double times = 1.0;
+  // What a joint makes of time may jump where it was seen to change.
+  if (std::ranges::any_of(joints_, [t](const TimedJoint& timed) { return t < timed.quick_until; })) times = hidden_jump;
   for (const Formula& formula : formulas_) {
     if (formula.sharp == CornerKind::motion || !formula.course.has_sides()) continue;
     const FormulaCourse::Beside beside = formula.course.singular(t);

@@ -167,9 +167,12 @@ void suspect_motion(const System& system, const Wreck& wreck, Suspects& suspects
                                                   pace.rate * 30.0 / M_PI)
                                     : fmt::format("moves with {:.3g} m/s", pace.rate);
     suspects.add(std::max(speed / fastest, turns ? pace.rate / fastest_turn : 0.0), [&] {
-      const bool jumps = pace.rate > suddenly * pace.mean;
-      return fmt::format("driver '{}' {}{}", driver.name,
-                         jumps ? fmt::format("jumps at t = {:.6g} s: there it ", pace.time) : "", words);
+      // Beside the edge of what a path may reach inputs turn ever faster, but jump nowhere.
+      const bool follows = driver.kinematics >= 0, jumps = !follows && pace.rate > suddenly * pace.mean;
+      return fmt::format(
+          "driver '{}' {}{}{}", driver.name,
+          follows ? fmt::format("on the path of '{}' ", model.kinematics[at(driver.kinematics)].name) : "",
+          jumps ? fmt::format("jumps at t = {:.6g} s: there it ", pace.time) : "", words);
     });
   }
   const Vector3& g = model.gravity;

@@ -22,7 +22,7 @@ constexpr double wanted = 0.4, longest = 1.0;
 constexpr double far_longer = 4.0;       // than the step before, which says nothing of it
 constexpr int most_long_steps = 4;       // in a row
 constexpr double shown_slower = 1.2;     // from one such time to the next, as the shortest shows now and then
-constexpr double long_ago = 1e6;         // of the longest
+constexpr double no_time_before = 1e6;   // of the longest
 constexpr double shortest_step = 1e-12;  // of the time
 
 bool can_touch(const Model& model) {
@@ -139,7 +139,7 @@ bool SmallDifference::step(const State& accepted, double dt) {
 // Nothing is known of times before.
 void SmallDifference::forget() {
   previous_ = older_ = acceleration_;
-  passed_ = {long_ago * longest_, long_ago * longest_};
+  passed_ = {no_time_before * longest_, no_time_before * longest_};
 }
 
 // The neighbour is moved onto the constraints, which it leaves slowly, and its accelerations are those of the equations

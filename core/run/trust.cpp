@@ -26,4 +26,9 @@ void Verdict::add(TrustReason reason) {
   reasons_.insert(place, std::move(reason));
 }
 
+void Verdict::lead(TrustReason reason) {
+  const auto place = std::ranges::find_if(reasons_, [&](const TrustReason& r) { return r.level <= reason.level; });
+  reasons_.insert(place, std::move(reason));
+}
+
 }  // namespace freeplay

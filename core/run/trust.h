@@ -31,6 +31,8 @@ class Verdict {
   void add(std::span<const TrustReason> reasons) {
     for (const TrustReason& reason : reasons) add(reason);
   }
+  /// Before all others of its level.
+  [[gnu::cold]] void lead(TrustReason reason);
   Trust level() const { return reasons_.empty() ? Trust::good : reasons_.front().level; }
   std::span<const TrustReason> reasons() const { return reasons_; }
 

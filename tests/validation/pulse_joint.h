@@ -8,15 +8,17 @@
 
 namespace freeplay::test {
 
-/// Force height sin^2(pi (t - begin)/duration) along world x on the second body while it lasts, else none. `told`: what
-/// the joint says of its time: 0 nothing, 1 its time scale, 2 its corners.
+/// Force along world x on the second body while it lasts, else none. With s = (t - begin)/duration and by `shape` it is
+/// 0: height sin^2(pi s), 1: height, 2: height s. `told`: what the joint says of its time: 0 nothing, 1 its time scale,
+/// 2 its corners.
 class PulseJoint final : public Joint {
  public:
   explicit PulseJoint(const Parameters& p)
       : height_(p.number("height")),
         begin_(p.number("begin")),
         duration_(p.number("duration")),
-        told_(p.integer("told")) {}
+        told_(p.integer("told")),
+        shape_(p.integer("shape")) {}
   void declare(JointLayout& layout) const override {
     layout.forces = 1;
     layout.analytic_derivatives = 1;  // it depends on nothing else
@@ -25,7 +27,7 @@ class PulseJoint final : public Joint {
   void apply(const JointInput& in, JointForces& out) const override {
     const double s = (in.t - begin_) / duration_;
     if (s < 0.0 || s > 1.0) return;
-    const double wave = std::sin(M_PI * s), force = height_ * wave * wave;
+    const double wave = std::sin(M_PI * s), force = height_ * (shape_ == 0 ? wave * wave : shape_ == 1 ? 1.0 : s);
     out.wrench_b[0] = force;
     out.wrench_a[0] = -force;
   }
@@ -36,7 +38,7 @@ class PulseJoint final : public Joint {
 
  private:
   double height_, begin_, duration_;
-  int told_;
+  int told_, shape_;
 };
 
 /// Force load(t) along world x on the second body.
@@ -60,7 +62,8 @@ inline Status publish_pulses(const Host* host, Manifest* manifest) noexcept {
   static constexpr Parameter pulse[] = {{.name = "height", .unit = "N"},
                                         {.name = "begin", .unit = "s"},
                                         {.name = "duration", .unit = "s"},
-                                        {.name = "told", .kind = ParameterKind::integer, .default_value = 0.0}};
+                                        {.name = "told", .kind = ParameterKind::integer, .default_value = 0.0},
+                                        {.name = "shape", .kind = ParameterKind::integer, .default_value = 0.0}};
   static constexpr Parameter load[] = {{.name = "load", .kind = ParameterKind::function, .unit = "N"}};
   static const Component components[] = {
       joint<PulseJoint>({.name = "pulse", .space = Space::planar, .parameters = pulse}),
