@@ -310,10 +310,10 @@ Json statistics_part(const RunRecord& record) {
           {"before", left_out ? std::move(before) : Json(nullptr)}};
 }
 
-/// By how much figures may differ in another run; null where nothing can touch.
+/// By how much figures may differ in another run; null where nothing can touch and no differences grow.
 Json noise_part(const RunRecord& record) {
   const PeakNoise& noise = record.statistics.largest().noise();
-  if (!noise.active()) return nullptr;
+  if (!noise.active() && !noise.differences_grew()) return nullptr;
   const PeakValues& peaks = record.statistics.largest().places();
   const auto value = [&](std::size_t i) { return json_number(noise.of(i)); };
   const Model& model = record.model;

@@ -9,14 +9,18 @@
 
 #include "assembly/out_of_reach.h"
 #include "assembly/play_rows.h"
+#include "assembly/row_space.h"
+#include "assembly/structure.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
+#include "linear/singular_values.h"
 #include "model/element_name.h"
 #include "model/whole_mass.h"
 
 namespace freeplay {
 namespace {
 constexpr double fewest_steps_in_period = 10.0;  // of a motion that carries energy
+constexpr double clearly_regular = 0.1;          // smallest singular value of rows by lengths, by the largest
 constexpr double least_energy = 1e-6;            // by masses lifted by the model's size, or crossing it in the run
 
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
@@ -120,9 +124,23 @@ void RunDoubts::note_lasting_blows() {
        .limit = fewest_steps_of_blow});
 }
 
+// By lengths alone: a body with hardly any inertia makes a regularity that goes by masses fall, too.
+bool RunDoubts::is_nearly_singular() const {
+  if (run_.system.layout().nv() > Structure::most_examined) return true;
+  Eigen::MatrixXd rows = constraint_matrix(run_.system.jacobian(), run_.e_accepted);
+  for (Eigen::Index c = 0; c < rows.cols(); ++c) {
+    if (run_.system.coordinates().is_turn(static_cast<int>(c))) rows.col(c) /= run_.system.size();
+  }
+  for (Eigen::Index r = 0; r < rows.rows(); ++r) rows.row(r).normalize();
+  const Eigen::VectorXd values = singular_values(rows).sigma;
+  return values.size() == 0 || !(values[values.size() - 1] > clearly_regular * values[0]);
+}
+
 // False where the row shows that going on makes no sense.
 bool RunDoubts::watch_row(double dt) {
+  const double passed_at = run_.watch.passed_at();
   run_.watch.add_regularity(run_.solver.regularity(), run_.accepted.t());
+  if (run_.watch.passed_at() < passed_at && !is_nearly_singular()) run_.watch.forget_passage();
   if (torn_from_ && run_.accepted.t() >= *torn_from_) return failure_.fail(4, "the mechanism is torn apart");
   if (!recorder_.loads_are_known() && !run_.watch.is_due(run_.e_accepted)) return true;
   if (!recorder_.know_loads()) return false;

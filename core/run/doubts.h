@@ -36,6 +36,7 @@ class RunDoubts {
   void restore(ArchiveReader& archive);
 
  private:
+  [[gnu::cold]] bool is_nearly_singular() const;
   struct Warning {
     const char* text = nullptr;
     double time = 0.0;

@@ -12,9 +12,10 @@ LoadChannels::LoadChannels(const System& system)
     : channels_(system.model(), system.layout(), system.markers(), system.joints()) {
   const Model& model = system.model();
   int switches = 0;
-  const auto add = [&](const MotionFormulas& formulas, std::string words, bool turns, ActsOn on) {
+  const auto add = [&](const MotionFormulas& formulas, std::string words, bool turns, ActsOn on,
+                       const AppliedForce* force = nullptr) {
     if (formulas.empty()) return;
-    Load load{&formulas, std::move(words), turns, on, switches, {}};
+    Load load{&formulas, std::move(words), turns, on, switches, {}, force};
     for (const MotionChannel& channel : formulas.channels) {
       load.units.push_back(channels_.turns(channel) ? 1.0 / system.size() : 1.0);
     }
@@ -22,8 +23,8 @@ LoadChannels::LoadChannels(const System& system)
     switches += formulas.switches();
   };
   for (const AppliedForce& force : model.forces) {
-    add(force.by_motion, fmt::format("force '{}'", force.name), force.kind == ForceKind::torque,
-        acts_on(system, force));
+    add(force.by_motion, fmt::format("force '{}'", force.name), force.kind == ForceKind::torque, acts_on(system, force),
+        &force);
   }
   for (const Driver& driver : model.drivers) {
     if (prescribes(driver.kind)) continue;

@@ -20,8 +20,9 @@ class LoadChannels {
     std::string words;  ///< "force 'x'" or "driver 'x'"
     bool turns;         ///< a torque
     ActsOn on;
-    int first_switch;           ///< of its formulas, in Layout::switches
-    std::vector<double> units;  ///< by channel: what counts as 1 m, or as 1 m in a second
+    int first_switch;                     ///< of its formulas, in Layout::switches
+    std::vector<double> units;            ///< by channel: what counts as 1 m, or as 1 m in a second
+    const AppliedForce* force = nullptr;  ///< whose components the formulas are, if they are of one
   };
   const std::vector<Load>& loads() const { return loads_; }
   /// Values and rates at an evaluated point (forces or events), for the accelerations `a` of the unknowns.

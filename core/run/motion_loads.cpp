@@ -35,14 +35,16 @@ MotionLoads::MotionLoads(RunContext& run)
   for (const LoadChannels::Load& load : channels_.loads()) {
     Load own{&load, -1, {}, MotionPieces(load.formulas->channels.size())};
     int first = load.first_switch;
+    int component = 0;
     for (const StateFormula& formula : load.formulas->formulas) {
       FormulaBounds bounds(formula);
       // In steps of one size nothing ends where a switch changes its side.
       const bool watched = bounds.may_hide() || (!run.adaptive && formula.switches() > 0);
       if (watched) {
-        own.formulas.push_back({.bounds = std::move(bounds), .first_switch = first});
+        own.formulas.push_back({.bounds = std::move(bounds), .first_switch = first, .component = component});
         own.formulas.back().box.resize(load.formulas->channels.size());
       }
+      ++component;
       first += formula.switches();
       switches = std::max(switches, at(formula.switches()));
     }
@@ -225,7 +227,7 @@ void MotionLoads::note() {
     for (Formula& formula : load.formulas) {
       formula.misses = false;
       formula.open = is_open(load, formula);
-      if (!formula.open && !formula.misses) formula.impulse.add(formula.made);
+      if (!formula.open && !formula.misses) formula.impulse.add(formula.made, speed_along(load, formula));
       open = open || formula.open || formula.misses;
     }
     load.motion.values_at_end(MotionPieces::count, load.end_values);
@@ -357,7 +359,20 @@ void MotionLoads::note(const Load& load, Formula& formula) {
     const double from = static_cast<double>(k) / static_cast<double>(MotionPieces::count);
     exact += impulse(course, from, from + 1.0 / static_cast<double>(MotionPieces::count));
   }
-  if (std::isfinite(exact)) formula.impulse.add(formula.made, exact);
+  if (std::isfinite(exact)) formula.impulse.add(formula.made, exact, speed_along(load, formula));
+}
+
+// Of its place along a component of a force, or about that of a torque, at the end of the step; 0 of other loads.
+double MotionLoads::speed_along(const Load& load, const Formula& formula) const {
+  const AppliedForce* const force = load.load->force;
+  if (force == nullptr) return 0.0;
+  const MarkerKinematics& marker = run_.e_trial->markers[at(force->marker)];
+  const std::size_t c = at(formula.component);
+  if (force->kind == ForceKind::torque) return marker.angular_velocity[force->value.size() == 1 ? 2 : c];
+  if (!force->frame_axes) return marker.velocity[c];
+  double speed = 0.0;
+  for (std::size_t r = 0; r < 3; ++r) speed += marker.rotation[3 * r + c] * marker.velocity[r];
+  return speed;
 }
 
 // Along the motion in a span of the step, by the value in its middle where that is good enough.

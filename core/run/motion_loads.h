@@ -46,6 +46,7 @@ class MotionLoads {
   struct Formula {
     FormulaBounds bounds;
     int first_switch;                                 ///< in Layout::switches
+    int component;                                    ///< of the load
     double low = unbounded, high = -unbounded;        ///< at the ends of all steps
     double beyond = 0.0, at = 0.0;                    ///< farthest beyond both ends of a step, and when [s]
     bool open = false;                                ///< whether more is to be known of it than a first look shows
@@ -105,6 +106,7 @@ class MotionLoads {
   bool may_cross(const Course& course) const;
   bool crosses(const Course& course, double s);
   void note(const Load& load, Formula& formula);
+  double speed_along(const Load& load, const Formula& formula) const;
   bool misses(const Load& load, Formula& formula, const Interval& range);
   double impulse(Course& course, double from, double to);
   bool shows(const Course& course, double length) const;

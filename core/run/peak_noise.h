@@ -54,6 +54,10 @@ class PeakNoise {
 
   /// Whether anything in the model can touch.
   bool active() const { return active_; }
+  /// Whether differences have grown in any group.
+  bool differences_grew() const {
+    return std::ranges::any_of(grown_, [](double grown) { return grown > 0.0; });
+  }
   /// By how much the largest value may differ in another run; of its unit.
   double of(std::size_t value) const;
   /// What has become of a small difference by now, of all that chance can do to a value: g of the class.

@@ -142,6 +142,10 @@ class RunWatch {
   [[gnu::cold]] void add_beside(const LargestValues& largest, std::span<const double> farther, double t);
   /// How near to a singular position the last step came (NewtonStageSolver::regularity).
   void add_regularity(double regularity, double t) { passage_.add(regularity, t, seen_); }
+  /// Where the motion was first seen to go through one; infinite: nowhere [s].
+  double passed_at() const { return seen_.passed_at; }
+  /// It was none.
+  void forget_passage() { seen_.passed_at = unbounded; }
   /// EnergyAccount::exchanged() by now.
   void note_exchanged(double work) { seen_.exchanged = work; }
   /// A row inside of a step that an accuracy chose.
