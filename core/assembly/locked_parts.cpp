@@ -75,11 +75,7 @@ class Stills {
   };
   Found find() {
     Found found = here();
-    along_ = VectorXd::Zero(motions_.rows());
-    for (Eigen::Index c = 0; c < motions_.cols(); ++c) {
-      const double share = static_cast<double>(c + 1) * 0.6180339887498949;
-      along_ += (0.5 + share - std::floor(share)) * motions_.col(c);
-    }
+    if (motions_.cols() > 0) along_ = first_way();
     for (int k = 0; k <= further_positions && found.any() && motions_.cols() > 0; ++k) {
       if (!move_on(k == 0 ? second_position : further_position)) return k == 0 ? Found{} : found;
       found.keep_those_of(here());
@@ -92,6 +88,36 @@ class Stills {
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
   bool is_guide(int j) const { return model_.joints[at(j)].ideal_layout().coordinate == Coordinate::position; }
 
+  /// The row of a joint's coordinate in the columns of all bodies.
+  VectorXd coordinate_row(int j) const {
+    const JointElement& joint = model_.joints[at(j)];
+    const int width = mechanism_.system.layout().body_velocities();
+    double row[12] = {}, bias = 0.0;
+    mechanism_.system.joints().coordinate_row(j, mechanism_.e, row, bias);
+    VectorXd all = VectorXd::Zero(mechanism_.system.layout().nv());
+    const BodyId bodies[2] = {body_of(joint.marker_a), body_of(joint.marker_b)};
+    for (int k = 0; k < 2; ++k) {
+      for (int c = 0; c < width && bodies[k] != ground; ++c) all[width * bodies[k] + c] += row[width * k + c];
+    }
+    return all;
+  }
+
+  /// As drivers move the mechanism, so that a cam turns; without them by all motions at once.
+  VectorXd first_way() const {
+    VectorXd way = VectorXd::Zero(motions_.rows());
+    for (const Driver& driver : model_.drivers) {
+      const bool has_row = model_.joints[at(driver.joint)].gear < 0 &&
+                           model_.joints[at(driver.joint)].ideal_layout().coordinate != Coordinate::none;
+      if (has_row) way += motions_ * (motions_.transpose() * coordinate_row(driver.joint));
+    }
+    if (way.norm() > counts_as_motion) return way;
+    for (Eigen::Index c = 0; c < motions_.cols(); ++c) {
+      const double share = static_cast<double>(c + 1) * 0.6180339887498949;
+      way += (0.5 + share - std::floor(share)) * motions_.col(c);
+    }
+    return way;
+  }
+
   /// Joints with one freedom that no motion moves, and joints with none.
   bool stands_still(int j) const {
     const System& system = mechanism_.system;
@@ -100,18 +126,8 @@ class Stills {
     if (is_force_element(joint) || joint.gear >= 0 || rows < width - 1) return false;
     if (rows == width || motions_.cols() == 0) return true;
     if (joint.ideal_layout().coordinate == Coordinate::none) return false;
-    double row[12] = {}, bias = 0.0;
-    system.joints().coordinate_row(j, mechanism_.e, row, bias);
-    VectorXd rate = VectorXd::Zero(motions_.cols());
-    double size = 0.0;
-    const BodyId bodies[2] = {body_of(joint.marker_a), body_of(joint.marker_b)};
-    for (int k = 0; k < 2; ++k) {
-      for (int c = 0; c < width && bodies[k] != ground; ++c) {
-        rate += row[width * k + c] * motions_.row(width * bodies[k] + c).transpose();
-        size = std::hypot(size, row[width * k + c]);
-      }
-    }
-    return rate.norm() <= counts_as_motion * size;
+    const VectorXd row = coordinate_row(j);
+    return (motions_.transpose() * row).norm() <= counts_as_motion * row.norm();
   }
 
   Found here() {

@@ -340,6 +340,10 @@ Slowest slowest_motion(const Model& model, double from) {
       slowest = {*turn / geared.ratio, written_name(model.joints[at(geared.joint)]),
                  fmt::format(", which {} turns", own)};
   }
+  for (const AppliedForce& force : model.forces) {
+    const auto period = model.settings.discard > 0.0 ? load_period(force, from, run) : std::nullopt;
+    if (period && *period > slowest.period) slowest = {*period, fmt::format("force '{}'", force.name)};
+  }
   return slowest;
 }
 

@@ -39,6 +39,18 @@ std::optional<double> motion_period(const Model& model, const Driver& driver, do
   return period && *period == 0.0 ? turn_period(model, driver, from, longest) : period;
 }
 
+std::optional<double> load_period(const AppliedForce& force, double from, double longest) {
+  if (!force.by_motion.empty()) return std::nullopt;
+  double period = 0.0;
+  for (const Expression& part : force.value) {
+    const auto of_part = part.depends_on_time() ? period_of(part, DriverKind::force, from, longest) : 0.0;
+    const auto common = of_part ? common_period(period, *of_part) : std::nullopt;
+    if (!common) return std::nullopt;
+    period = *common;
+  }
+  return period > 0.0 && period <= longest ? std::optional(period) : std::nullopt;
+}
+
 std::optional<double> turn_period(const Model& model, const Driver& driver, double from, double longest) {
   if (driver.kinematics >= 0 || driver.table || !driver.by_motion.empty()) return std::nullopt;
   const auto period = period_of(driver.value, driver.kind, from, longest);

@@ -12,7 +12,10 @@ namespace freeplay {
 /// for from `from` on, up to `longest` seconds. Empty where there is none, as of a motion from point to point.
 std::optional<double> motion_period(const Model& model, const Driver& driver, double from, double longest);
 
-/// The same of a steady turn alone.
+/// The same of a load, by its value.
+std::optional<double> load_period(const AppliedForce& force, double from, double longest);
+
+/// That of a driver of a steady turn alone.
 std::optional<double> turn_period(const Model& model, const Driver& driver, double from, double longest);
 
 }  // namespace freeplay

@@ -49,6 +49,16 @@ joints: {pin: {type: revolute, between: [ground, rod]}}
               "initial: {joints: {pin: 0.1}}\n")
     MOTOR = LET_GO + "forces: {drag: {type: torque, on: rod, value: -0.1 N*m*s/rad*body.rod.omega}}\ndrivers: {m: {joint: pin, kind: torque, value: %s}}\n"
 
+    def test_less_than_the_period_of_a_load_is_no_window(self):
+        hits = ("freeplay: 1\nbodies: {m: {mass: 1, inertia: 1}}\njoints: {g: {type: prismatic, between: [ground, m]}}\n"
+                "forces: {hit: {type: force, at: m, value: ['20*smooth(sin(2*pi*7*t), 0.5, 0.9)', 0]}}\n"
+                "simulation: {end: 3, accuracy: 1 um, output: {discard: %s}}\n")
+        self.assertEqual(["statistics-window"], self.ids(hits % "2.95"))
+        reason = json.loads(self.read("r", "summary.json"))["trust"]["reasons"][0]
+        self.assertEqual("force 'hit'", reason["element"])
+        self.assertIn("less than the period of 0.143 s of force 'hit'", reason["message"])
+        self.assertEqual([], self.ids(hits % "2"))
+
     def test_less_than_a_swing_is_no_window(self):
         """A pendulum with i = 0.14 kg m^2 and m g d = 1.962 N m swings by 20 deg in 2 pi sqrt(i/(m g d)) (1 + 20^2/16 rad^2) = 1.691 s."""
         for steps in ("accuracy: 1 um", "step: 1 ms", "step: 1 ms, integrator: bathe"):

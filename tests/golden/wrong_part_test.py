@@ -226,7 +226,18 @@ forces: {spring: {type: spring-damper, between: [ground/seat, valve/top], stiffn
 initial: {joints: {camshaft: 180 deg}}
 simulation: {end: 30 ms, accuracy: 0.2 um}
 """
+# An arm that draws.
+PLOTTER = """freeplay: 1
+bodies:
+  upper: {mass: 2, inertia: 0.02, com: [0.15, 0], frames: {elbow: [0.3, 0]}, pose: {angle: 40 deg}}
+  fore: {mass: 1, inertia: 0.01, com: [0.15, 0], frames: {pen: [0.3, 0]}, pose: {position: [0.23, 0.19], angle: -40 deg}}
+joints: {shoulder: {type: revolute, between: [ground, upper]}, elbow: {type: revolute, between: [upper/elbow, fore]}}
+drivers: {move: {inverse_kinematics: {frame: fore/pen, path: {x: "0.4 m + 40 mm*cos(360 deg*t/1 s)", y: "50 mm*smooth(t, 0, 1 s)"}, joints: [shoulder, elbow]}}}
+simulation: {end: 1, accuracy: 1 um}
+"""
 SLIPS += [
+    (PLOTTER, "50 mm*smooth", "50*smooth", "doubtful-length", "has a term of 50 m where the lengths of the mechanism are about"),
+    (PLOTTER, "cos(360 deg*t/1 s)", "cos(50*smooth(t, 0, 1 s))", "doubtful-angle", "takes a sine, cosine or tangent of 50 rad"),
     (PRESS, "journal: upper/knee", "journal: upper", "locked", "bodies 'lower', 'ram' cannot move, though the mechanism can: joints 'knuckle', 'wrist', 'guide' hold them"),
     (PRESS, "170 mm, 190 mm", "170, 190", "doubtful-length", "compares 'body.ram.y' with 170 m in a mechanism of"),
     (PRESS, "smooth(-body.ram.y, 170 mm, 190 mm)", "if(body.ram.y < -170, 1, 0)", "doubtful-length", "write '170 mm'"),
@@ -265,7 +276,7 @@ class WrongPart(ProgramTest):
     def test_what_is_meant_is_not_doubted(self):
         turned = PRESS.replace("smooth(-body.ram.y, 170 mm, 190 mm)", "if(joint.main.angle > 30 rad, 100, 10)*smooth(joint.head.angle, 20 deg, 40 deg)")
         swings = SWUNG.replace("20 deg*sin(t*3 rad/s)", "0.4*sin(t*3 rad/s) + 0.2*smooth(t, 0 s, 360 s)")
-        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, turned, swings):
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, PLOTTER, turned, swings):
             with self.subTest(text[:300]):
                 self.assertEqual([], self.messages(text))
 
