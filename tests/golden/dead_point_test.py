@@ -190,8 +190,10 @@ class DeadPoint(ProgramTest):
     def test_the_verdict_names_the_dead_point_before_what_it_leads_to(self):
         for text in (SLIDE.replace("step: 1 ms", "accuracy: 1 um"), FOUR_BAR % (0.3, PLAY, SPEED, "A: 20 deg", "accuracy: 1 um")):
             self.reason(text)
-            first, *_ = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
-            self.assertRegex(first["message"], r"^the mechanism comes to a dead point: (body|joint) '\w+' at t = [^;]+$")
+            first, second, *_ = json.loads(self.read("r", "summary.json"))["trust"]["reasons"]
+            self.assertEqual("run-failed", first["id"])
+            self.assertRegex(first["message"], r"^the run failed: t = .* comes to a dead point at .*\[dead-point\]$")
+            self.assertRegex(second["message"], r"^the mechanism comes to a dead point: (body|joint) '\w+' at t = [^;]+$")
 
     def test_ideal_joints_in_steps_of_every_kind(self):
         limit = math.degrees(math.acos((0.2**2 + 0.4**2 - 0.4**2) / (2 * 0.2 * 0.4)))
