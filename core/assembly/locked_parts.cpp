@@ -246,11 +246,13 @@ std::vector<int> joints_of(BodyId body, const Model& model) {
   return found;
 }
 
-/// A joint of the body that stands on a body that does move, at the very place of another of its joints.
+/// A pin of the body that stands on a body that does move, at the very place of another of its pins.
 bool stands_at_a_pivot(BodyId body, const std::vector<BodyId>& still, const System& system) {
   const Model& model = system.model();
+  const auto is_pin = [](const JointElement& joint) { return joint.ideal_layout().coordinate == Coordinate::angle; };
   for (const int j : joints_of(body, model)) {
     const JointElement& joint = model.joints[at(j)];
+    if (!is_pin(joint)) continue;
     for (const int marker : {joint.marker_a, joint.marker_b}) {
       const Marker& here = model.markers[at(marker)];
       if (here.body == ground || std::ranges::count(still, here.body) > 0) continue;
@@ -260,7 +262,7 @@ bool stands_at_a_pivot(BodyId body, const std::vector<BodyId>& still, const Syst
         const Marker& there = a.body == here.body ? a : model.markers[at(one.marker_b)];
         const double apart = std::hypot(there.position[0] - here.position[0], there.position[1] - here.position[1],
                                         there.position[2] - here.position[2]);
-        if (other != j && apart <= one_place * system.size()) return true;
+        if (other != j && is_pin(one) && apart <= one_place * system.size()) return true;
       }
     }
   }
