@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
 
 #include <fmt/format.h>
@@ -128,7 +128,8 @@ double degrees_by_time(std::string_view text) {
     const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) && (i == 0 || !is_number_part(text[i - 1]));
     if (!begins) continue;
     const std::size_t end = std::min(text.find_first_not_of("0123456789.", i), text.size());
-    const double number = std::strtod(std::string(text.substr(i, end - i)).c_str(), nullptr);
+    double number = 0.0;
+    std::from_chars(text.data() + i, text.data() + end, number);
     const std::size_t next = std::min(text.find_first_not_of(' ', end), text.size());
     const bool bare = next == text.size() || !begins_word(text[next]);
     if (bare && number > 0.0 && std::fmod(number, 180.0) == 0.0) return number;

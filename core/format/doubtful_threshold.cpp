@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <vector>
@@ -38,10 +38,11 @@ std::string_view without_brackets(std::string_view text) {
 
 /// One number without a unit; NaN for all else.
 double bare_number(std::string_view text) {
-  const std::string digits(stripped(text));
-  char* end = nullptr;
-  const double number = digits.empty() ? NAN : std::strtod(digits.c_str(), &end);
-  return end != nullptr && *end == '\0' && digits.find_first_not_of("0123456789.eE+-") == digits.npos ? number : NAN;
+  const std::string_view digits = stripped(text);
+  double number = NAN;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  const bool whole = error == std::errc() && end == digits.data() + digits.size();
+  return whole && std::isfinite(number) ? number : NAN;
 }
 
 enum class Kind { other, angle, place };

@@ -18,8 +18,7 @@ namespace freeplay {
 ///   Y(t) = 2/t int_0^t (d'/d) s ds,  with the mean Z(t) = 1/t int_0^t Y ds,
 ///
 /// Z tends to 2 for regular motions, whose differences grow with the time or not at all, and to L t / 2 for chaotic
-/// ones, whose differences grow by exp(L t). From Z = 3 on exp(2 (Z - 1)) is the growth, which is at least the
-/// exponential part of it.
+/// ones, whose differences grow by exp(L t). From Z = 3 on the growth is about exp(2 (Z - 1)).
 ///
 /// The neighbour takes steps of its own by a multistep method, each a small part of the time in which differences swing
 /// and as long as one of the run at least: a digit of the exponent is enough. Where steps of the run go over these
