@@ -91,6 +91,7 @@ void RunDoubts::judge_motion() {
     run_.outcome.doubts.push_back(std::move(reason));
   }
   if (swings_) run_.outcome.slowest = slow_.slowest(run_.outcome.time, run_.accepted.v(), run_.accepted.a());
+  if (run_.solver.rows().hold_everything()) return;
   const FastMotion::Fewest fewest = motion_.fewest();
   const double time = run_.outcome.time - run_.settings.start, size = run_.system.size();
   if (!(fewest.steps < fewest_steps_in_period) || !(time > 0.0)) return;

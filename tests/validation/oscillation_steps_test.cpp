@@ -71,5 +71,9 @@ TEST(OscillationSteps, AreNoneOfImpactsAndSticking) {
   EXPECT_EQ(counted(mechanism("slider-crank")), 0.0);
 }
 
+TEST(OscillationSteps, AreNoneOfAMechanismThatItsDriverMovesAlone) {
+  EXPECT_EQ(counted(replaced(mechanism("four-bar"), "step: 1 ms}", "step: 40 ms, output: {interval: 40 ms}}")), 0.0);
+}
+
 }  // namespace
 }  // namespace freeplay::test
