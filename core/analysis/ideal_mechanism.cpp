@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
 #include "analysis/posture.h"
 #include "analysis/regular_start.h"
 #include "assembly/assembly.h"
+#include "base/disjoint_sets.h"
 #include "base/error.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
@@ -166,22 +166,17 @@ std::vector<BodyId> IdealMechanism::bodies_of(int j) const {
 
 void IdealMechanism::find_parts() {
   const int bodies = static_cast<int>(model_->bodies.size());
-  std::vector<int> root(at(bodies));
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int b) {
-    while (root[at(b)] != b) b = root[at(b)];
-    return b;
-  };
+  DisjointSets tied(bodies);
   const int joints = static_cast<int>(model_->joints.size());
   for (int j = 0; j < joints; ++j) {
     if (!ties(j)) continue;
     const std::vector<BodyId> all = bodies_of(j);
-    for (const BodyId b : all) root[at(std::max(find(b), find(all[0])))] = std::min(find(b), find(all[0]));
+    for (const BodyId b : all) tied.unite(b, all[0]);
   }
   std::map<int, std::size_t> part_of;  // by root
   for (int b = 0; b < bodies; ++b) {
     if (b == body_) continue;
-    const auto [place, fresh] = part_of.emplace(find(b), parts_.size());
+    const auto [place, fresh] = part_of.emplace(tied.root(b), parts_.size());
     if (fresh) parts_.emplace_back();
     parts_[place->second].bodies.push_back(b);
   }
@@ -190,7 +185,7 @@ void IdealMechanism::find_parts() {
     if (!ties(j)) continue;
     const std::vector<BodyId> all = bodies_of(j);
     if (all.empty()) parts_.emplace_back();
-    Limb& part = all.empty() ? parts_.back() : parts_[part_of.at(find(all[0]))];
+    Limb& part = all.empty() ? parts_.back() : parts_[part_of.at(tied.root(all[0]))];
     part_of_joint[at(j)] = static_cast<std::size_t>(&part - parts_.data());
     const Slice rows = system_->layout().rows(j);
     for (int r = 0; r < rows.size; ++r) part.rows.push_back(rows.offset + r);

@@ -1,7 +1,6 @@
 #include "assembly/driver_reach.h"
 
-#include <numeric>
-
+#include "base/disjoint_sets.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -9,8 +8,7 @@ namespace {
 
 class Groups {
  public:
-  explicit Groups(const Model& model) : model_(model), root_(model.bodies.size()) {
-    std::iota(root_.begin(), root_.end(), 0);
+  explicit Groups(const Model& model) : model_(model), sets_(static_cast<int>(model.bodies.size())) {
     for (std::size_t j = 0; j < model.joints.size(); ++j) {
       const JointElement& joint = model.joints[j];
       if (joint.gear < 0) tie(joint.marker_a, joint.marker_b);
@@ -28,15 +26,12 @@ class Groups {
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }
-  int root(int body) {
-    while (root_[at(body)] != body) body = root_[at(body)] = root_[at(root_[at(body)])];
-    return body;
-  }
+  int root(int body) { return sets_.root(body); }
 
  private:
   void tie(int marker, int other) {
     const BodyId a = body_of(marker), b = body_of(other);
-    if (a != ground && b != ground) root_[at(root(a))] = root(b);
+    if (a != ground && b != ground) sets_.unite(a, b);
   }
   void tie_to_channels(const MotionFormulas& formulas, int marker) {
     for (const MotionChannel& channel : formulas.channels) {
@@ -50,7 +45,7 @@ class Groups {
   }
 
   const Model& model_;
-  std::vector<int> root_;
+  DisjointSets sets_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -17,6 +16,7 @@
 #include "assembly/given_poses.h"
 #include "assembly/left_free.h"
 #include "assembly/row_space.h"
+#include "base/disjoint_sets.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "model/force_element.h"
@@ -32,20 +32,25 @@ constexpr double second_position = 0.05, further_position = 0.3;
 constexpr int further_positions = 21;
 constexpr double one_place = 1e-9;  // of the size of the model
 
-/// Groups of bodies, the last of them ground, that grow together.
-class BodyGroups {
+constexpr BodyId no_body = -2;
+
+/// Of two places on one body.
+double distance(const Marker& here, const Marker& there) {
+  return std::hypot(there.position[0] - here.position[0], there.position[1] - here.position[1],
+                    there.position[2] - here.position[2]);
+}
+
+/// Bodies and ground that are fixed to each other.
+class FixedGroups {
  public:
-  explicit BodyGroups(std::size_t bodies) : of_(bodies + 1) { std::iota(of_.begin(), of_.end(), std::size_t{0}); }
-  void unite(BodyId a, BodyId b) { of_[root(a)] = root(b); }
-  bool together(BodyId a, BodyId b) const { return root(a) == root(b); }
+  explicit FixedGroups(const Model& model) : ground_(static_cast<int>(model.bodies.size())), sets_(ground_ + 1) {}
+  void unite(BodyId a, BodyId b) { sets_.unite(place(a), place(b)); }
+  bool together(BodyId a, BodyId b) { return sets_.together(place(a), place(b)); }
 
  private:
-  std::size_t root(BodyId body) const {
-    std::size_t i = body == ground ? of_.size() - 1 : at(body);
-    while (of_[i] != i) i = of_[i];
-    return i;
-  }
-  std::vector<std::size_t> of_;
+  int place(BodyId body) const { return body == ground ? ground_ : body; }
+  int ground_;
+  DisjointSets sets_;
 };
 
 class Stills {
@@ -63,14 +68,24 @@ class Stills {
     int guide = 0;
     std::vector<int> loop;
   };
+  /// Two pins at one place of one body, whose other bodies pins between these keep from moving against each other.
+  struct Folded {
+    std::pair<int, int> pins;
+    BodyId body = ground;
+    std::vector<BodyId> as_one;
+    std::vector<int> held_by;
+  };
   struct Found {
     std::vector<Locked> guides;
     std::vector<BodyId> bodies;
-    bool any() const { return !guides.empty() || !bodies.empty(); }
+    std::vector<Folded> folded;
+    bool any() const { return !guides.empty() || !bodies.empty() || !folded.empty(); }
     void keep_those_of(const Found& other) {
       std::erase_if(
           guides, [&](const Locked& one) { return std::ranges::count(other.guides, one.guide, &Locked::guide) == 0; });
       std::erase_if(bodies, [&](BodyId one) { return std::ranges::count(other.bodies, one) == 0; });
+      std::erase_if(folded,
+                    [&](const Folded& one) { return std::ranges::count(other.folded, one.pins, &Folded::pins) == 0; });
     }
   };
   Found find() {
@@ -138,10 +153,10 @@ class Stills {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (stands_still(j)) still.push_back(j);
     }
-    Found found{{}, still_bodies()};
+    Found found{{}, still_bodies(), folded_links(still)};
     for (const int j : still) {
       if (!is_guide(j)) continue;
-      BodyGroups without(model_.bodies.size());
+      FixedGroups without(model_);
       for (const int other : still) {
         if (other != j) without.unite(bodies_of(other).first, bodies_of(other).second);
       }
@@ -161,10 +176,54 @@ class Stills {
     return {body_of(model_.joints[at(j)].marker_a), body_of(model_.joints[at(j)].marker_b)};
   }
 
+  /// Chains of moving bodies that pins which stand still make one, held at both ends by pins at one place.
+  std::vector<Folded> folded_links(const std::vector<int>& still) const {
+    std::vector<Folded> found;
+    if (std::ranges::none_of(still, [&](int j) { return is_pin(j); })) return found;
+    FixedGroups groups(model_);
+    for (const int j : still) groups.unite(bodies_of(j).first, bodies_of(j).second);
+    const int joints = static_cast<int>(model_.joints.size());
+    for (int j = 0; j < joints; ++j) {
+      for (int k = j + 1; k < joints && is_pin(j); ++k) {
+        const BodyId body = shared_place(j, k);
+        if (body == no_body || !is_pin(k)) continue;
+        const BodyId a = other_body(j, body), b = other_body(k, body);
+        if (a == b || groups.together(a, ground) || groups.together(a, body) || !groups.together(a, b)) continue;
+        Folded one{{j, k}, body, {}, {}};
+        for (BodyId member = 0; member < static_cast<BodyId>(model_.bodies.size()); ++member) {
+          if (groups.together(member, a)) one.as_one.push_back(member);
+        }
+        std::ranges::copy_if(still, std::back_inserter(one.held_by),
+                             [&](int held) { return is_pin(held) && groups.together(bodies_of(held).first, a); });
+        found.push_back(std::move(one));
+      }
+    }
+    return found;
+  }
+
+  bool is_pin(int j) const {
+    const JointElement& joint = model_.joints[at(j)];
+    return joint.gear < 0 && !is_force_element(joint) && joint.ideal_layout().coordinate == Coordinate::angle;
+  }
+  BodyId other_body(int j, BodyId body) const {
+    const auto [a, b] = bodies_of(j);
+    return a == body ? b : a;
+  }
+  /// The body on which both joints stand at one place, or no_body.
+  BodyId shared_place(int j, int k) const {
+    for (const int one : {model_.joints[at(j)].marker_a, model_.joints[at(j)].marker_b}) {
+      for (const int two : {model_.joints[at(k)].marker_a, model_.joints[at(k)].marker_b}) {
+        const Marker &here = model_.markers[at(one)], &there = model_.markers[at(two)];
+        if (here.body == there.body && distance(here, there) <= one_place * mechanism_.system.size()) return here.body;
+      }
+    }
+    return no_body;
+  }
+
   /// Bodies that no motion moves, but for those that joints without a freedom fix to ground.
   std::vector<BodyId> still_bodies() const {
     const int width = mechanism_.system.layout().body_velocities();
-    BodyGroups fixed(model_.bodies.size());
+    FixedGroups fixed(model_);
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       if (mechanism_.system.layout().rows(j).size == width) fixed.unite(bodies_of(j).first, bodies_of(j).second);
     }
@@ -209,7 +268,7 @@ class Stills {
 /// Does a driver or a start speed move the bodies that hang together with those of a joint other than by ground?
 bool is_moved(const Model& model, const JointElement& joint) {
   const auto body_of = [&](int marker) { return model.markers[at(marker)].body; };
-  BodyGroups groups(model.bodies.size());
+  DisjointSets groups(static_cast<int>(model.bodies.size()));
   for (const JointElement& other : model.joints) {
     const BodyId a = body_of(other.marker_a), b = body_of(other.marker_b);
     if (other.gear < 0 && !is_force_element(other) && a != ground && b != ground) groups.unite(a, b);
@@ -260,23 +319,23 @@ bool stands_at_a_pivot(BodyId body, const std::vector<BodyId>& still, const Syst
         const JointElement& one = model.joints[at(other)];
         const Marker& a = model.markers[at(one.marker_a)];
         const Marker& there = a.body == here.body ? a : model.markers[at(one.marker_b)];
-        const double apart = std::hypot(there.position[0] - here.position[0], there.position[1] - here.position[1],
-                                        there.position[2] - here.position[2]);
-        if (other != j && is_pin(one) && apart <= one_place * system.size()) return true;
+        if (other != j && is_pin(one) && distance(here, there) <= one_place * system.size()) return true;
       }
     }
   }
   return false;
 }
 
+bool is_far_off(BodyId body, const GivenPoses& given, std::span<const double> q, const System& system) {
+  return given.shift(body, q) > GivenPoses::far_part * system.size() ||
+         std::abs(given.turn(body, q)) > GivenPoses::far_turn;
+}
+
 /// Of bodies that cannot move: the first that is far from the pose that the file gives, else one with a loose joint, or
 /// one that hangs on the pivot of what moves.
 BodyId suspect(const std::vector<BodyId>& bodies, const GivenPoses& given, std::span<const double> q,
                const System& system) {
-  const auto is_far = [&](BodyId b) {
-    return given.shift(b, q) > GivenPoses::far_part * system.size() ||
-           std::abs(given.turn(b, q)) > GivenPoses::far_turn;
-  };
+  const auto is_far = [&](BodyId b) { return is_far_off(b, given, q, system); };
   const auto is_loose = [&](BodyId b) {
     return std::ranges::any_of(joints_of(b, system.model()),
                                [&](int j) { return system.model().joints[at(j)].has_play; });
@@ -311,6 +370,27 @@ void doubt_bodies(const System& system, std::span<const double> q, const std::ve
        body.location, std::max(character_count(body.name), 1)});
 }
 
+/// Where a pin with play is among those that hold the bodies together, or one of these has not kept its given pose:
+/// other ones may be a truss.
+void doubt_folded(const System& system, std::span<const double> q, const Stills::Folded& one, Structure& structure) {
+  const Model& model = system.model();
+  const GivenPoses given(system);
+  const bool is_loose = std::ranges::any_of(one.held_by, [&](int j) { return model.joints[at(j)].has_play; });
+  const auto is_far = [&](BodyId b) { return is_far_off(b, given, q, system); };
+  if ((!is_loose && std::ranges::none_of(one.as_one, is_far)) || structure.doubts.size() >= Structure::most_doubts)
+    return;
+  std::vector<std::string> names;
+  for (const BodyId b : one.as_one) names.push_back(fmt::format("'{}'", model.bodies[at(b)].name));
+  const JointElement &first = model.joints[at(one.pins.first)], &second = model.joints[at(one.pins.second)];
+  structure.doubts.push_back(
+      {"same-frame",
+       fmt::format("joints '{}' and '{}' hold '{}' at one place, so that {} move as one body: is one of them meant at "
+                   "another frame",
+                   first.name, second.name, one.body == ground ? "ground" : model.bodies[at(one.body)].name,
+                   fmt::join(names, ", ")),
+       second.location, std::max(character_count(second.name.substr(second.name.rfind('.') + 1)), 1)});
+}
+
 }  // namespace
 
 void doubt_locked(const System& system, const State& start, Structure& structure) {
@@ -336,6 +416,7 @@ void doubt_locked(const System& system, const State& start, Structure& structure
          guide.location, std::max(character_count(own), 1)});
   }
   doubt_bodies(system, start.q(), found.bodies, structure);
+  for (const Stills::Folded& one : found.folded) doubt_folded(system, start.q(), one, structure);
 }
 
 }  // namespace freeplay

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <string>
 #include <string_view>
@@ -25,6 +24,7 @@
 #include "assembly/short_links.h"
 #include "assembly/start_overlap.h"
 #include "assembly/weak_springs.h"
+#include "base/disjoint_sets.h"
 #include "base/index.h"
 #include "base/text.h"
 #include "component/joint_roles.h"
@@ -115,23 +115,18 @@ class Examination {
   /// Bodies that nothing ties to the others and on which nothing acts.
   void find_loose_ends() {
     const int bodies = static_cast<int>(model_.bodies.size());
-    std::vector<int> group(at(bodies + 1));  // the last is ground
-    std::iota(group.begin(), group.end(), 0);
-    const auto root = [&](int i) {
-      while (group[at(i)] != i) i = group[at(i)] = group[at(group[at(i)])];
-      return i;
-    };
+    DisjointSets groups(bodies + 1);  // the last is ground
     const auto place = [&](BodyId body) { return body == ground ? bodies : body; };
     std::vector<char> acted(at(bodies + 1), 0);
     for (const JointElement& joint : model_.joints) {
       if (joint.gear >= 0) continue;
       const int a = place(body_of(joint.marker_a)), b = place(body_of(joint.marker_b));
-      group[at(root(a))] = root(b);
+      groups.unite(a, b);
       acted[at(a)] = acted[at(b)] = 1;
     }
     for (const AppliedForce& force : model_.forces) acted[at(place(body_of(force.marker)))] = 1;
     int held = 0;
-    for (int i = 0; i < bodies; ++i) held += root(i) == root(bodies) ? 1 : 0;
+    for (int i = 0; i < bodies; ++i) held += groups.together(i, bodies) ? 1 : 0;
     flies_ = held == 0;
     if (flies_) return;
     for (int i = 0; i < bodies; ++i) {
@@ -143,7 +138,7 @@ class Examination {
             body.name, body.location);
     }
     std::vector<int> islands(at(bodies));
-    for (int i = 0; i < bodies; ++i) islands[at(i)] = root(i) == root(bodies) ? -1 : root(i);
+    for (int i = 0; i < bodies; ++i) islands[at(i)] = groups.together(i, bodies) ? -1 : groups.root(i);
     find_islands(std::move(islands));
   }
 

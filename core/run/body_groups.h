@@ -21,7 +21,6 @@ class BodyGroups {
  private:
   BodyId body(int marker) const;
   BodyId moved(int joint) const;
-  void unite(BodyId a, BodyId b);
 
   const Model& model_;
   std::vector<int> of_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "assembly/play_rows.h"
 #include "assembly/row_space.h"
 #include "assembly/structure.h"
+#include "base/disjoint_sets.h"
 #include "base/index.h"
 #include "component/joint_roles.h"
 #include "linear/singular_values.h"
@@ -25,20 +25,17 @@ constexpr double least_energy = 1e-6;            // by masses lifted by the mode
 
 // Whether the bodies of a joint hang together without it, so that others may hold what it should.
 bool in_a_loop(const Model& model, int without) {
-  const std::size_t bodies = model.bodies.size();  // the last place is ground's
-  std::vector<std::size_t> group(bodies + 1);
-  std::iota(group.begin(), group.end(), std::size_t{0});
-  const auto root = [&](int marker) {
+  const int bodies = static_cast<int>(model.bodies.size());
+  DisjointSets groups(bodies + 1);  // the last is ground
+  const auto place = [&](int marker) {
     const BodyId body = model.markers[at(marker)].body;
-    std::size_t i = body == ground ? bodies : at(body);
-    while (group[i] != i) i = group[i];
-    return i;
+    return body == ground ? bodies : body;
   };
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const JointElement& joint = model.joints[at(j)];
-    if (j != without && joint.gear < 0) group[root(joint.marker_a)] = root(joint.marker_b);
+    if (j != without && joint.gear < 0) groups.unite(place(joint.marker_a), place(joint.marker_b));
   }
-  return root(model.joints[at(without)].marker_a) == root(model.joints[at(without)].marker_b);
+  return groups.together(place(model.joints[at(without)].marker_a), place(model.joints[at(without)].marker_b));
 }
 }  // namespace
 

@@ -1,9 +1,9 @@
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "base/disjoint_sets.h"
 #include "base/index.h"
 #include "sdf/scene.h"
 #include "urdf/name_pool.h"
@@ -27,26 +27,6 @@ void turn_round(Joint& joint) {
   joint.parent.frame.linear() *= swapped;
   joint.child.frame.linear() *= swapped;
 }
-
-/// Sets of links that are connected.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : of_(count) { std::iota(of_.begin(), of_.end(), 0); }
-  int of(int link) {
-    while (of_[at(link)] != link) link = of_[at(link)] = of_[at(of_[at(link)])];
-    return link;
-  }
-  /// False where they were together already.
-  bool join(int a, int b) {
-    a = of(a);
-    b = of(b);
-    of_[at(b)] = a;
-    return a != b;
-  }
-
- private:
-  std::vector<int> of_;
-};
 
 class RobotBuilder {
  public:
@@ -283,16 +263,16 @@ class RobotBuilder {
   /// what hangs on nothing. The rest closes loops.
   void hang_links() {
     const std::size_t count = robot_.joints.size();
-    Groups groups(robot_.links.size());
+    DisjointSets connected(static_cast<int>(robot_.links.size()));
     std::vector<bool> chosen(count), has_parent(robot_.links.size());
     for (std::size_t i = 0; i < count; ++i) {
       const Joint& joint = robot_.joints[i];
       if (has_parent[at(joint.child.link)]) continue;
-      if (groups.join(joint.parent.link, joint.child.link)) chosen[i] = has_parent[at(joint.child.link)] = true;
+      if (connected.unite(joint.parent.link, joint.child.link)) chosen[i] = has_parent[at(joint.child.link)] = true;
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Joint& joint = robot_.joints[i];
-      if (!chosen[i] && groups.join(joint.parent.link, joint.child.link)) chosen[i] = true;
+      if (!chosen[i] && connected.unite(joint.parent.link, joint.child.link)) chosen[i] = true;
     }
     std::vector<std::vector<std::size_t>> at_link(robot_.links.size());
     for (std::size_t i = 0; i < count; ++i) {
