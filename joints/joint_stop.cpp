@@ -36,14 +36,14 @@ class Stops {
   const char* doubt(double s, bool slides) const {
     const double d = depth(s), way = upper_ - lower_;
     const bool far = (way > 0.0 && d > most_ways * way) || (!slides && d > most_turn);
-    return far ? "The joint is far beyond the end of its way: a driver moves it through its stop, or the stop is too "
-                 "soft."
+    return far ? "The joint is far beyond the end of its way: something moves it through its stop, it starts there, or "
+                 "the stop is too soft."
                : nullptr;
   }
 
  private:
   // How far beyond an end no stop yields: by the way between the two ends, and of turns.
-  static constexpr double most_ways = 2.0;
+  static constexpr double most_ways = 0.25;
   static constexpr double most_turn = std::numbers::pi / 2.0;  // [rad]
 
   /// 1 beyond the upper end, -1 beyond the lower.

@@ -364,9 +364,10 @@ void doubt_bodies(const System& system, std::span<const double> q, const std::ve
   const Body& body = model.bodies[at(first)];
   structure.doubts.push_back(
       {"locked",
-       fmt::format("{} {} cannot move, though the mechanism can: {} hold {}; check at which frames they stand",
-                   names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "), joint_names(joints, model),
-                   names.size() == 1 ? "it" : "them"),
+       fmt::format(
+           "{} {} cannot move, though the mechanism can: {} hold {}; check at which frames they stand, and their axes",
+           names.size() == 1 ? "body" : "bodies", fmt::join(names, ", "), joint_names(joints, model),
+           names.size() == 1 ? "it" : "them"),
        body.location, std::max(character_count(body.name), 1)});
 }
 

@@ -233,6 +233,24 @@ std::vector<double> StartBranches::turned(int seed) const {
   return q;
 }
 
+// Newton's method alone, as the given pose would draw the body back.
+void StartBranches::add_from_half_turns() {
+  const bool planar = mechanism_.model().space == Space::planar;
+  for (int b = 0; b < static_cast<int>(mechanism_.model().bodies.size()); ++b) {
+    const Body& body = mechanism_.model().bodies[at(b)];
+    if (!body.angle && !body.rotation) continue;
+    for (int axis = planar ? 2 : 0; axis < 3; ++axis) {
+      std::ranges::copy(guess_, mechanism_.state.q().begin());
+      Pose pose = system_.coordinates().frame_pose(b, guess_);
+      for (int i = 0; i < 9; ++i) {
+        if (i % 3 != axis) pose.rotation[i] = -pose.rotation[i];
+      }
+      system_.coordinates().set_frame_pose(b, pose, mechanism_.state.q());
+      if (mechanism_.holds(mechanism_.converge())) add_found();
+    }
+  }
+}
+
 void StartBranches::search() {
   const Eigen::Index columns = system_.layout().nv();
   if (columns > most_columns) return;
@@ -240,6 +258,7 @@ void StartBranches::search() {
   add_approached(guess_);
   const int seeds = columns <= columns_for_many ? 12 : columns <= columns_for_some ? 4 : 0;
   for (int seed = 0; seed < seeds; ++seed) add_approached(turned(seed));
+  if (columns <= columns_for_some) add_from_half_turns();
   const std::size_t mirrors = columns <= columns_for_some ? 6 : 1;
   const std::vector<Position> known(found_.begin(),
                                     found_.begin() + static_cast<std::ptrdiff_t>(std::min(found_.size(), mirrors)));

@@ -20,8 +20,8 @@ class StartBranches {
 
   /// Takes the position that the mechanism's state has for one of them.
   void add_found();
-  /// Looks for more of them from the guess, from guesses that are turned by fixed angles, and from the mirror images of
-  /// those that are found. Does nothing in large models.
+  /// Looks for more of them from the guess, from guesses that are turned by fixed angles, from those in which one of
+  /// the given poses has half a turn more, and from the mirror images of those that are found. Does nothing in large models.
   void search();
 
   bool any() const { return !found_.empty(); }
@@ -49,6 +49,7 @@ class StartBranches {
   void count_turns_as_guessed();
   void approach(std::span<const double> start);
   void add_approached(std::span<const double> start);
+  void add_from_half_turns();
   std::vector<double> turned(int seed) const;
   Eigen::VectorXd difference(std::span<const double> from, std::span<const double> to) const;
   double from_guess(std::span<const double> q) const;

@@ -305,7 +305,7 @@ class Examination {
     const JointElement& holder = both == rank_a ? one : other;
     return doubt("duplicate-joint",
                  fmt::format("joint '{}' holds nothing that '{}' does not hold between the same two bodies: how they "
-                             "share the force is arbitrary; delete one of them",
+                             "share the force is arbitrary; delete one of them, or let it hold what it was meant for",
                              idle.name, holder.name),
                  idle.name, idle.location);
   }

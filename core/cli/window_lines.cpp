@@ -69,7 +69,7 @@ std::string before_window(const RunRecord& record) {
   return text;
 }
 
-/// Where rows are farther apart than a peak lasts.
+/// Where rows are farther apart than a peak lasts, and what they miss is more than chance.
 std::string missed_by_rows(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
   const auto all = statistics.largest().in_window(), written = statistics.largest().written();
@@ -81,6 +81,7 @@ std::string missed_by_rows(const RunRecord& record) {
   double least = 1.0 / clearly;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double peak = all[force(j)], share = written[force(j)] / peak;
+    if (peak - written[force(j)] <= statistics.largest().noise().of(force(j))) continue;
     if (!joints[j].is_force && peak > of_interest * largest && share < least) worst = j, least = share;
   }
   if (worst == joints.size() || !(written[force(worst)] >= 0.0)) return {};

@@ -14,12 +14,15 @@ namespace freeplay {
 namespace {
 
 // As most_of_load: springs, dampers and friction answer motions, impacts among them.
-constexpr double most_of_element = 3e5;  // [m/s^2]
-// Joints pass on what presses in a clamp, many times the weight of its parts.
-constexpr double most_of_joint = 5e5;    // [m/s^2]
-constexpr double fastest_slide = 100.0;  // [m/s], on ground: catapults of ships
-constexpr double fastest_body = 200.0;   // [m/s]
-constexpr double fastest_mean = 1000.0;  // [m/s], of all masses: rings of steel burst at 400, carbon fibre reaches it
+constexpr double most_of_element = 3e5;   // [m/s^2]
+constexpr double steel_density = 7800.0;  // [kg/m^3]
+constexpr double steel_yields = 2.5e8;    // [Pa], structural steel; loose joints of sound models come to a quarter
+constexpr double counts_as_part = 1e-3;   // of all masses: lighter bodies only stand between joints
+constexpr double noteworthy = 0.01;       // of the limit of a load that may be the cause
+constexpr double fastest_slide = 100.0;   // [m/s], on ground: catapults of ships
+constexpr double fastest_body = 200.0;    // [m/s]
+// At the radius of gyration, or of all masses: rings of steel burst at 400, carbon fibre reaches it.
+constexpr double fastest_turning = 1000.0;  // [m/s]
 
 class LoadJudge {
  public:
@@ -30,17 +33,15 @@ class LoadJudge {
     if (!(all_.mass > 0.0) || !(size_ > 0.0)) return;
     look_at_forces();
     look_at_drivers();
-    if (!(worst_.excess > 1.0)) look_at_joints();  // which only pass on what others press with
     if (worst_.excess > 1.0) {
-      verdict.add(
-          {.id = "load-size",
-           .level = Trust::doubtful,
-           .message = fmt::format("{} of {:.3g} {} on {:.3g} kg{}: check its numbers and their units", worst_.element,
-                                  worst_.amount, worst_.unit, all_.mass,
-                                  model_length(model_) > 0.0 ? fmt::format(" in a mechanism of {:.2g} m", size_) : ""),
-           .element = worst_.element,
-           .value = worst_.excess * worst_.limit,
-           .limit = worst_.limit});
+      verdict.add({.id = "load-size",
+                   .level = Trust::doubtful,
+                   .message = words_of_load() + ": check its numbers and their units",
+                   .element = worst_.element,
+                   .value = worst_.excess * worst_.limit,
+                   .limit = worst_.limit});
+    } else {
+      look_at_joints(verdict);  // which only pass on what others press with
     }
     look_at_speeds(verdict);
   }
@@ -90,13 +91,55 @@ class LoadJudge {
     }
   }
 
-  void look_at_joints() {
+  std::string words_of_load() const {
+    return fmt::format("{} of {:.3g} {} on {:.3g} kg{}", worst_.element, worst_.amount, worst_.unit, all_.mass,
+                       model_length(model_) > 0.0 ? fmt::format(" in a mechanism of {:.2g} m", size_) : "");
+  }
+
+  /// What a joint passes on, by the cross-section of a cube of steel with the mass of its lighter body: bars have less.
+  void look_at_joints(Verdict& verdict) const {
+    double most = steel_yields, most_force = 0.0;
+    int joint = -1;
+    BodyId on = ground;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
-      const JointElement& joint = model_.joints[at(j)];
-      if (is_force_element(joint) || joint.has_play || joint.gear >= 0) continue;
-      look_at(largest(record_.statistics.largest().places().force(j)), 0.0, most_of_joint,
-              fmt::format("joint '{}'", joint.name));
+      const JointElement& element = model_.joints[at(j)];
+      if (is_force_element(element) || element.gear >= 0) continue;
+      const double force = largest(record_.statistics.largest().places().force(j));
+      for (const int marker : {element.marker_a, element.marker_b}) {
+        const BodyId body = model_.markers[at(marker)].body;
+        if (body == ground || model_.bodies[at(body)].mass < counts_as_part * all_.mass) continue;
+        const double side = std::cbrt(model_.bodies[at(body)].mass / steel_density), stress = force / (side * side);
+        if (stress > most) most = stress, most_force = force, joint = j, on = body;
+      }
     }
+    if (joint < 0) return;
+    const std::string name = fmt::format("joint '{}'", model_.joints[at(joint)].name);
+    const Body& body = model_.bodies[at(on)];
+    verdict.add({.id = "load-size",
+                 .level = Trust::doubtful,
+                 .message = fmt::format("{} passes {:.3g} N on to '{}' of {:.3g} kg: {:.2g} Pa in a cube of steel of "
+                                        "that mass, which yields at {:.2g} Pa; check {}",
+                                        name, most_force, body.name, body.mass, most, steel_yields, source_of_load()),
+                 .element = name,
+                 .value = most,
+                 .limit = steel_yields});
+  }
+
+  /// The largest load, or the prescribed motion that takes the largest effort.
+  std::string source_of_load() const {
+    if (worst_.excess > noteworthy) return words_of_load() + " and the masses";
+    double most = 0.0;
+    std::string text = "masses and loads";
+    for (std::size_t d = 0; d < model_.drivers.size(); ++d) {
+      const Driver& driver = model_.drivers[d];
+      const bool turns = model_.joints[at(driver.joint)].layout.coordinate == Coordinate::angle;
+      const double effort = largest(record_.statistics.largest().places().effort(static_cast<int>(d)));
+      const double amount = turns ? all_.by_torque(effort, size_) : all_.by_force(effort);
+      if (!prescribes(driver.kind) || !(amount > most)) continue;
+      most = amount;
+      text = fmt::format("the motion of driver '{}', the masses, and the lengths that it moves", driver.name);
+    }
+    return text;
   }
 
   bool slides_on_ground(BodyId body) const {
@@ -121,10 +164,15 @@ class LoadJudge {
     }
     // What turns on its place is fast without moving.
     const double mean = std::sqrt(2.0 * record_.extremes.kinetic.most / all_.mass);
+    const double rim = std::sqrt(record_.extremes.rim_squared);
     if (!reason.element.empty()) {
       reason.message = fmt::format("{} moves with {:.3g} m/s", reason.element, reason.value);
-    } else if (mean > fastest_mean) {
-      reason.value = mean, reason.limit = fastest_mean;
+    } else if (rim > fastest_turning) {
+      reason.value = rim, reason.limit = fastest_turning;
+      reason.element = fmt::format("body '{}'", model_.bodies[at(record_.extremes.fastest_rim)].name);
+      reason.message = fmt::format("{} turns with {:.3g} m/s at its radius of gyration", reason.element, rim);
+    } else if (mean > fastest_turning) {
+      reason.value = mean, reason.limit = fastest_turning;
       reason.message = fmt::format("the energy of motion is that of all masses at {:.3g} m/s", mean);
     } else {
       return;

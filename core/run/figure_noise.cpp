@@ -58,8 +58,9 @@ FigureNoise::OfJoint FigureNoise::joint(int index) const {
   const double grown = largest.noise().grown(place);
   const double contacts = std::max(static_cast<double>(seen.contacts), loose.contacts);
   out.contacts = of_chance * grown * std::sqrt(contacts);
-  out.contact_fraction = of_chance * grown * std::max(1.0 - seen.contact_fraction, loose.flight) *
-                         std::sqrt(2.0 / std::max(contacts, 1.0));
+  const double flight = 1.0 - seen.contact_fraction;
+  const double noise = of_chance * grown * std::max(flight, loose.flight) * std::sqrt(2.0 / std::max(contacts, 1.0));
+  out.contact_fraction = std::min(noise, std::max(flight, seen.contact_fraction));  // a part is between 0 and 1
   return out;
 }
 

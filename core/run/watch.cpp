@@ -139,7 +139,9 @@ double RunWatch::Mover::speed_squared(std::span<const double> row) const {
 void RunWatch::add_speeds(std::span<const double> row) {
   runaway_ = -1;
   for (const Mover& mover : movers_) {
-    if (mover.rim_squared(row) > trust::fastest_rim * trust::fastest_rim ||
+    const double rim = mover.rim_squared(row);
+    if (rim > seen_.rim_squared) seen_.rim_squared = rim, seen_.fastest_rim = mover.body;
+    if (rim > trust::fastest_rim * trust::fastest_rim ||
         mover.speed_squared(row) > trust::speed_of_light * trust::speed_of_light) {
       runaway_ = mover.body;
     }

@@ -81,7 +81,9 @@ struct RunExtremes {
   double drive_effort = 0.0;   ///< largest force, or torque by L, of a driver that applies one [N]
   double beyond_reach = 0.0;   ///< largest distance of a body from the origin by what the lengths allow
   int farthest_body = -1;
-  double size = 0.0;                                   ///< L: of the model [m]
+  double rim_squared = 0.0;  ///< largest square of the speed at a body's radius of gyration [m^2/s^2]
+  int fastest_rim = -1;      ///< its body
+  double size = 0.0;         ///< L: of the model [m]
   double least_regularity = 1.0, singular_time = 0.0;  ///< nearest to a singular position, and when [s]
   double passed_at = unbounded;                        ///< the first singular position that was passed, if any [s]
   double open = 0.0;                                   ///< largest residual of a constraint's position [m or rad]
@@ -94,6 +96,7 @@ struct RunExtremes {
     archive(self.near, self.beside, self.away, self.noisy, self.near_change);
     archive(self.applied_force);
     archive(self.drive_motion, self.drive_effort, self.beyond_reach, self.farthest_body, self.size);
+    archive(self.rim_squared, self.fastest_rim);
     archive(self.least_regularity, self.singular_time, self.passed_at, self.open);
   }
 };

@@ -281,8 +281,8 @@ std::string PathFollower::names_of_moved(const Eigen::VectorXd& motion, Work& wo
 
 std::string words_of_place(const PathEdge& edge) {
   return fmt::format(
-      ": a singular place, {:.2g} m from the edge of what is reached, at {}; lead the path past it, or "
-      "smoothly through it",
+      ": a singular place, {:.2g} m from the edge of what is reached, at {}; keep the path within what is reached, or "
+      "lead it smoothly through the place",
       edge.distance, edge.joints);
 }
 

@@ -393,6 +393,8 @@ simulation: {end: 1 s, accuracy: 1 um}
         reason = next(r for r in self.trust["reasons"] if r["id"] == "law-range")
         self.assertEqual("force 'stop'", reason["element"])
         self.assertIn("through its stop", reason["message"])
+        self.run_model(text % "40 deg + 80 deg*sin(2*pi*t)")
+        self.assertEqual(["law-range"], self.ids())
         self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
