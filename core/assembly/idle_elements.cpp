@@ -28,6 +28,7 @@ constexpr double by_sound = 1e-6;        // stop of a body [s]: sound crosses 5 
 constexpr double far_below_step = 0.01;  // of a fixed step, or of the time between rows
 constexpr double most_beyond = 0.1;      // of the way between the ends of a stop
 constexpr double least_beyond = 0.01;    // rad, or of the size of the model
+constexpr double most_pressed = 0.01;    // of that way, by a driver
 constexpr double in_turns = 0.5 / std::numbers::pi;
 constexpr double most_unwound = 0.125;  // of a spring that is wound by a turn, but for this turn [turns]
 constexpr double same_ratio = 1e-6;     // of strands and of a gear between their wheels
@@ -43,9 +44,10 @@ class Elements {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
       const JointElement& element = model_.joints[at(j)];
       if (!is_force_element(element) || !element.parameters || element.has_play || element.gear >= 0) continue;
-      if (judge_idle(j)) continue;
+      if (judge_idle(j) || judge_unguided(j)) continue;
       judge_damping(j);
       judge_ends(j);
+      judge_driven_ends(j);
       judge_turn(j);
       if (!judge_strands(j)) judge_driven_strands(j);
     }
@@ -73,9 +75,9 @@ class Elements {
     const std::optional<MatrixXd> rate = rates_.of(j);
     for (int i = 0; i < static_cast<int>(model_.joints.size()); ++i) {
       const JointElement& joint = model_.joints[at(i)];
-      if (is_force_element(joint) || joint.gear >= 0 || joint.has_play || !same_bodies(joint, element)) continue;
+      if (is_force_element(joint) || joint.gear >= 0 || !same_bodies(joint, element)) continue;
       if (rate && leaves_nothing(i, *rate, element)) return say_idle(element, joint), true;
-      if (!acts_along_line(element) || joint.ideal_layout().pin == 0 || rates_.line(joint)) continue;
+      if (joint.has_play || !acts_along_line(element) || joint.ideal_layout().pin == 0 || rates_.line(joint)) continue;
       const bool first = same_place(joint, element.marker_a), second = same_place(joint, element.marker_b);
       if (first && second ? has_free_length(element) : !first && !second) continue;
       doubt("idle-force",
@@ -91,6 +93,26 @@ class Elements {
       return true;
     }
     return false;
+  }
+
+  /// An element along an axis between two bodies that no joint keeps on it, as where their guide is missing. True after
+  /// a message.
+  bool judge_unguided(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    if (element.ideal_layout().coordinate != Coordinate::position) return false;
+    const auto joins = [&](const JointElement& joint) {
+      return !is_force_element(joint) && joint.gear < 0 && same_bodies(joint, element);
+    };
+    if (std::ranges::any_of(model_.joints, joins)) return false;
+    const double* axes = e_.markers[at(element.marker_a)].rotation;
+    const Eigen::Vector3d across(axes[1], axes[4], axes[7]);
+    if ((rates_.of_ends(element, across, 0.0, 0.0) * motions()).norm() <= counts_as_motion) return false;
+    doubt("left-free",
+          fmt::format("'{}' acts along x of '{}', but no joint guides '{}' along it against '{}': is a guide missing",
+                      element.name, model_.markers[at(element.marker_a)].name, body_name(element.marker_b),
+                      body_name(element.marker_a)),
+          element);
+    return true;
   }
 
   bool same_bodies(const JointElement& one, const JointElement& other) const {
@@ -196,6 +218,60 @@ class Elements {
                       "check its ends and their units, and the start",
                       element.name, here, unit, beyond, unit, lower, upper, unit),
           element);
+  }
+
+  /// A driver of a joint between the same bodies that moves it beyond an end by a part of its way.
+  void judge_driven_ends(int j) {
+    const JointElement& element = model_.joints[at(j)];
+    const double lower = element_number(element, "lower"), upper = element_number(element, "upper"),
+                 here = e_.coordinate[at(j)];
+    const std::optional<MatrixXd> rate = rates_.of(j);
+    if (element.ideal_layout().coordinate == Coordinate::none || !(upper > lower) || !rate || is_start_doubted(element))
+      return;
+    for (int d = 0; d < static_cast<int>(model_.drivers.size()); ++d) {
+      const Driver& driver = model_.drivers[at(d)];
+      const JointElement& joint = model_.joints[at(driver.joint)];
+      if (!prescribes(driver.kind) || joint.ideal_layout().coordinate != element.ideal_layout().coordinate ||
+          !same_bodies(joint, element))
+        continue;
+      const MatrixXd own = *rates_.of(driver.joint);
+      const double by = (*rate * own.transpose())(0, 0) / own.squaredNorm();
+      if ((*rate - by * own).norm() > held * rate->norm()) continue;
+      const std::vector<double> ways = ways_of(d);
+      const auto beyond = [&](double way) { return std::fmax(lower - here - by * way, here + by * way - upper); };
+      if (ways.empty()) return;
+      const double most = beyond(*std::ranges::max_element(ways, {}, beyond));
+      if (!(most > most_pressed * (upper - lower))) continue;
+      const bool turns = element.ideal_layout().coordinate == Coordinate::angle;
+      doubt("doubtful-value",
+            fmt::format("driver '{}' moves joint '{}' {} beyond the ends of '{}', which cannot stop it: check its "
+                        "value and the ends",
+                        driver.name, joint.name,
+                        turns ? fmt::format("{:.3g} deg", 360.0 * in_turns * most) : fmt::format("{:.3g} m", most),
+                        element.name),
+            element);
+      return;
+    }
+  }
+
+  /// How far a driver has moved its joint since the start, all through the run; empty where it cannot be evaluated.
+  std::vector<double> ways_of(int driver) const {
+    std::vector<TimeValue> values(model_.drivers.size());
+    std::vector<double> ways;
+    const double from = model_.settings.start, span = model_.settings.end - from;
+    for (int i = 0; i <= looks_of_run; ++i) {
+      MotionFault fault;
+      if (!system_.motions().evaluate(from + span * i / looks_of_run, {values.data(), values.size()}, fault)) return {};
+      ways.push_back(values[at(driver)].value);
+    }
+    const double start = ways.front();
+    for (double& way : ways) way -= start;
+    return ways;
+  }
+  bool is_start_doubted(const JointElement& element) const {
+    return std::ranges::any_of(structure_.doubts, [&](const StructureDoubt& doubt) {
+      return doubt.message.starts_with(fmt::format("'{}' starts at ", element.name));
+    });
   }
 
   /// A torsion spring wound by a whole turn: from an angle of -10 deg it is one to the direction of 350 deg.
@@ -353,9 +429,9 @@ class Elements {
 
 }  // namespace
 
-void doubt_elements(const System& system, const Evaluation& at_start, Structure& structure) {
-  if (system.layout().nv() > Structure::most_examined) return;
-  Elements(system, at_start, structure).judge();
+void doubt_elements(const System& closed, const Evaluation& at_start, Structure& structure) {
+  if (closed.layout().nv() > Structure::most_examined) return;
+  Elements(closed, at_start, structure).judge();
 }
 
 }  // namespace freeplay

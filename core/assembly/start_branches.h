@@ -21,7 +21,8 @@ class StartBranches {
   /// Takes the position that the mechanism's state has for one of them.
   void add_found();
   /// Looks for more of them from the guess, from guesses that are turned by fixed angles, from those in which one of
-  /// the given poses has half a turn more, and from the mirror images of those that are found. Does nothing in large models.
+  /// the given poses has half a turn more, and from the mirror images of those that are found. Does nothing in large
+  /// models.
   void search();
 
   bool any() const { return !found_.empty(); }

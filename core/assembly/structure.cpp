@@ -54,6 +54,7 @@ class Examination {
       doubt("dead-point", words(*dead, model_), driver.name, driver.location);
     }
     find_loose_ends();
+    find_what_acts();
     const auto doubt_element = [&](const char* id, const std::string& message, const JointElement& element) {
       doubt(id, message, element.name, element.location);
     };
@@ -128,6 +129,11 @@ class Examination {
     int held = 0;
     for (int i = 0; i < bodies; ++i) held += groups.together(i, bodies) ? 1 : 0;
     flies_ = held == 0;
+    if (flies_ && bodies > 0 && falls_alone()) {
+      doubt("not-connected",
+            "no joint or force ties any body to ground, so that all of them fall: connect one, or give a velocity",
+            model_.bodies[0].name, model_.bodies[0].location);
+    }
     if (flies_) return;
     for (int i = 0; i < bodies; ++i) {
       const Body& body = model_.bodies[at(i)];
@@ -140,6 +146,24 @@ class Examination {
     std::vector<int> islands(at(bodies));
     for (int i = 0; i < bodies; ++i) islands[at(i)] = groups.together(i, bodies) ? -1 : groups.root(i);
     find_islands(std::move(islands));
+  }
+
+  bool falls_alone() const {
+    const auto falls = [](const Body& body) { return body.gravity != Vector3{} && !has_velocity(body); };
+    return model_.forces.empty() && model_.drivers.empty() && std::ranges::all_of(model_.bodies, falls);
+  }
+
+  /// Whether anything can move the mechanism.
+  void find_what_acts() {
+    const auto starts = [](const JointElement& joint) {
+      return is_force_element(joint) || gives_velocity(joint) || (joint.start_speed && joint.start_speed->value != 0.0);
+    };
+    const auto moves = [](const Body& body) { return body.gravity != Vector3{} || has_velocity(body); };
+    if (model_.bodies.empty() || !model_.drivers.empty() || !model_.forces.empty() ||
+        std::ranges::any_of(model_.joints, starts) || std::ranges::any_of(model_.bodies, moves))
+      return;
+    doubt("nothing-acts", "nothing moves the mechanism: there is no gravity, force, driver or start speed",
+          model_.bodies[0].name, model_.bodies[0].location);
   }
 
   /// Bodies that hang together by joints alone, which nothing moves and nothing ties to ground. `island`: of each body;
