@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "assembly/driver_reach.h"
+#include "assembly/element_number.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "model/force_element.h"
@@ -310,7 +311,9 @@ class FreeMotions {
       const JointElement& joint = model_.joints[at(j)];
       if (joint.gear >= 0) continue;
       const bool on_moving = is_moving(body_of(joint.marker_a)) || is_moving(body_of(joint.marker_b));
-      const bool spring = joint.is_force && joint.ideal_layout().coordinate == Coordinate::angle;
+      // Between its ends a stop holds nothing.
+      const bool spring = joint.is_force && joint.ideal_layout().coordinate == Coordinate::angle &&
+                          !std::isfinite(element_number(joint, "upper"));
       if (on_moving && (spring || joint.start_coordinate || joint.start_speed)) {
         given = stacked(given, coordinate_rate(j));
       }
@@ -335,17 +338,14 @@ class FreeMotions {
     const std::vector<int> candidates = moving_in(given, idle);
     const int width = closed_.layout().body_velocities();
     const auto turns_unnoticed = [&](int b) { return idle.middleRows(width * b, width).squaredNorm(); };
-    // Robots start as their file draws them.
-    const auto of_robot = [&](int b) { return model_.bodies[at(b)].location.file != model_.file; };
     const std::vector<char> guesses = may_miss_a_joint(is_moving);
     const auto posed = [&](int b) {
       const Body& body = model_.bodies[at(b)];
-      return of_robot(b) || (!guesses[at(b)] && (body.angle || body.rotation || (body.position && !jointed[at(b)])));
+      return !guesses[at(b)] && (body.angle || body.rotation || (body.position && !jointed[at(b)]));
     };
     const double all_turns = (model_.space == Space::planar ? 1.0 : 3.0) - counts_as_motion;
-    const auto own_alone = [&](int b) { return !of_robot(b) && turns_unnoticed(b) > all_turns; };
     for (const int b : candidates) {
-      if (posed(b) && !own_alone(b)) given = stacked(given, body_rates(b));
+      if (posed(b) && turns_unnoticed(b) <= all_turns) given = stacked(given, body_rates(b));
     }
     const std::vector<int> moving = moving_in(given, idle_spins(given));
     std::vector<int> unrestrained;

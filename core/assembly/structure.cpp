@@ -150,8 +150,11 @@ class Examination {
 
   bool falls_alone() const {
     const auto falls = [](const Body& body) { return body.gravity != Vector3{} && !has_velocity(body); };
-    return model_.forces.empty() && model_.drivers.empty() && std::ranges::all_of(model_.bodies, falls);
+    return model_.forces.empty() && model_.drivers.empty() && !is_robot() && std::ranges::all_of(model_.bodies, falls);
   }
+
+  /// A robot file by itself, which cannot say what acts.
+  bool is_robot() const { return model_.text.find('<') == model_.text.find_first_not_of(" \t\r\n"); }
 
   /// Whether anything can move the mechanism.
   void find_what_acts() {
@@ -159,7 +162,7 @@ class Examination {
       return is_force_element(joint) || gives_velocity(joint) || (joint.start_speed && joint.start_speed->value != 0.0);
     };
     const auto moves = [](const Body& body) { return body.gravity != Vector3{} || has_velocity(body); };
-    if (model_.bodies.empty() || !model_.drivers.empty() || !model_.forces.empty() ||
+    if (model_.bodies.empty() || is_robot() || !model_.drivers.empty() || !model_.forces.empty() ||
         std::ranges::any_of(model_.joints, starts) || std::ranges::any_of(model_.bodies, moves))
       return;
     doubt("nothing-acts", "nothing moves the mechanism: there is no gravity, force, driver or start speed",
