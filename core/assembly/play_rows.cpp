@@ -94,6 +94,11 @@ bool starts_by_its_load(const JointElement& joint) {
   });
 }
 
+bool could_start_by_its_load(const JointElement& joint) {
+  const auto is_start = [](const auto& entry) { return entry.first.ends_with(".initial"); };
+  return joint.parameters && std::ranges::any_of(joint.parameters->values, is_start) && !starts_by_its_load(joint);
+}
+
 void require_borne_loads(const Model& model, const std::vector<InitialOffset>& offsets) {
   for (std::size_t j = 0; j < model.joints.size(); ++j) {
     const JointElement& joint = model.joints[j];

@@ -19,6 +19,8 @@ bool gives_tilt(const JointElement& joint);
 /// Whether its block leaves the start to the type by another word than the one that stands for the middle: at rest
 /// under its load.
 bool starts_by_its_load(const JointElement& joint);
+/// Whether its block has the key by which it would, and does not.
+bool could_start_by_its_load(const JointElement& joint);
 /// Throws `assembly-failed` for a journal that its load presses so deep into its bearing that it stands off by more
 /// than twice its clearance: its loop need not close then.
 void require_borne_loads(const Model& model, const std::vector<InitialOffset>& offsets);

@@ -104,8 +104,8 @@ class ExpressionOperands : protected ExpressionText {
       default:
         if (result.dimensioned() && !result.dimension.dimensionless()) {
           fail("dimension-mismatch", result.begin, result.end,
-               fmt::format("'{}' needs an angle or a number, but this is {}", function.name,
-                           dimension_name(result.dimension)));
+               fmt::format("'{}' needs an angle or a number, but this is {}; divide it by a {} to make it a number",
+                           function.name, dimension_name(result.dimension), dimension_name(result.dimension)));
         }
     }
     result.kind = DimensionKind::plain;

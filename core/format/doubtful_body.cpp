@@ -208,10 +208,16 @@ class BodyDoubts {
     if (body(i).mass > body_limit::sheet * disc && gyration_[i] <= body_limit::any_gyration * around)
       return judge_airy_body(i);
     const bool own = own_reach >= around;
+    // A mass that would go with this inertia and these lengths may be the one that is meant.
+    const double fitting = largest_moment(body(i), in_space_) / (0.25 * around * around);
+    const bool by_mass = fitting < body_limit::bare_density * around * around * around;
     warn(i, "inertia", "doubtful-inertia",
-         fmt::format("{}, but {} {:.4g} m: check the number{}", moment_words(i),
+         fmt::format("{}, but {} {:.4g} m: check {}{}", moment_words(i),
                      own ? "its frames reach" : "the lengths of the mechanism are about", around,
-                     is_foreign(i) ? "" : " and write its unit, as in 'kg*mm^2'"));
+                     by_mass ? "mass and inertia" : "the number",
+                     is_foreign(i) ? ""
+                     : by_mass     ? ", and their units"
+                                   : " and write its unit, as in 'kg*mm^2'"));
     return true;
   }
 
@@ -254,7 +260,7 @@ class BodyDoubts {
     if (!value) return false;
     const bool of_com = i && value->key() == "com";
     if (place_says_unit(*value, of_com ? body(*i).com : outline.farthest_place)) return false;
-    const bool foreign = i && is_foreign(*i);
+    const bool foreign = i && (of_com || frame->second.key == nullptr ? is_foreign(*i) : frame->second.key->foreign);
     const double number = of_com ? distance(body(*i).com, {}) : own;
     if (!doubted_.insert(&value->node()).second) return true;
     value->warn("doubtful-length",

@@ -242,7 +242,8 @@ void RunDoubts::note_damped_peaks() {
              "a law of impact divides by the speed at which the contact began, here next to "
              "nothing; {}compare with a law without loss",
              joint, times,
-             starts_by_its_load(run_.model.joints[at(j)]) ? "" : "start it under its load ('initial: loaded'), or "),
+             could_start_by_its_load(run_.model.joints[at(j)]) ? "start it under its load ('initial: loaded'), or "
+                                                               : ""),
          .element = joint,
          .value = times,
          .limit = RunWatch::most_damped});

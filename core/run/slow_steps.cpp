@@ -102,7 +102,7 @@ void SlowSteps::judge_contacts(double mean, double all) {
 const char* SlowSteps::remedy_for(const ContactPace& pace) const {
   if (pace.slides) return "take a friction that sets in over a larger speed, as by a larger 'vs'";
   const JointElement& joint = run_.model.joints[at(pace.joint)];
-  if (!joint.has_play || starts_by_its_load(joint)) return "take a law or a restitution that damps less";
+  if (!could_start_by_its_load(joint)) return "take a law or a restitution that damps less";
   return "start it in contact under its load ('initial: loaded'), take a law or a restitution that damps less";
 }
 
