@@ -135,7 +135,9 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
     const auto [open, others] = opening.settle(joint);
     if (!(others <= closed_enough * std::max(1.0, mechanism.system.size()))) continue;
     if (farthest_body(mechanism) > LoopGap::far_away * std::max(mechanism.system.size(), open)) continue;
-    if (!gap || open < (1.0 - 1e-6) * gap->size) gap = LoopGap{joint, open};
+    if (!gap || open < (1.0 - 1e-6) * gap->size) {
+      gap = LoopGap{joint, open, miss_of(joint, mechanism, mechanism.position_rows())};
+    }
   }
   std::ranges::copy(q, mechanism.state.q().begin());
   std::ranges::copy(h, mechanism.state.h().begin());

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "assembly/closed_mechanism.h"
+#include "assembly/joint_miss.h"
 
 namespace freeplay {
 
@@ -13,6 +14,7 @@ struct LoopGap {
   /// Of bodies from the origin, by the model's size: there a small turn closes any gap.
   static constexpr double far_away = 10.0;
   double size = 0.0;  ///< root of the sum of squares of what its rows miss [m, rad]
+  JointMiss miss{};   ///< the same by its units
 };
 
 /// Largest distance of a body from the origin of the world, where the mechanism stands [m].

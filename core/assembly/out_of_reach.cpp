@@ -230,9 +230,9 @@ class Reach {
         "at {}",
         t_, driver.name, model_.joints[at(driver.joint)].name, words(end, kind));
     if (most && most->gap.size > noise * mechanism_.system.size()) {
-      text += fmt::format(", and at {} joint '{}' would stay open by {:.4g} m",
+      text += fmt::format(", and at {} joint '{}' would stay open by {}",
                           words(end + (exit.up ? most->out : -most->out), kind),
-                          model_.joints[at(most->gap.joint)].name, most->gap.size);
+                          model_.joints[at(most->gap.joint)].name, words(most->gap.miss, 0.0, 4));
     } else if (most) {
       text += ", beyond which its loops close only where it would have to leap to";
     }
