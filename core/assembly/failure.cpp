@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/contradiction.h"
 #include "assembly/drive_range.h"
 #include "assembly/loop_gap.h"
 #include "assembly/loop_sides.h"
@@ -16,6 +17,8 @@
 
 namespace freeplay {
 namespace {
+
+constexpr std::size_t most_named = 12;  // conditions
 
 /// "; the path of 'tool' begins at x = 1 m, y = 0 m", of every path.
 std::string begin_of_paths(const ClosedMechanism& mechanism) {
@@ -59,35 +62,38 @@ std::string too_many(const ClosedMechanism::Rows& rows) {
                      over == 1 ? "freedom" : "freedoms");
 }
 
-}  // namespace
-
-void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
-  const Model& model = mechanism.model();
-  const Layout& layout = mechanism.system.layout();
-  double worst = -1.0;
+/// What stays open most, and where it stands in the file.
+struct OpenElement {
+  double gap = -1.0;
   std::string text;
   Location location;
-  const auto consider = [&](double gap, const std::string& words, const Location& place) {
-    if (!(gap <= worst)) worst = gap, text = words, location = place;
-  };
+  int joint = -1;  ///< that stays open; -1 for a value that is missed
+  void consider(double size, const std::string& words, const Location& place, int open_joint = -1) {
+    if (!(size <= gap)) gap = size, text = words, location = place, joint = open_joint;
+  }
+};
+
+OpenElement widest_open(const ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
+  const Model& model = mechanism.model();
+  const Layout& layout = mechanism.system.layout();
+  OpenElement open;
   for (int j = 0; j < static_cast<int>(model.joints.size()); ++j) {
     const Slice slice = layout.rows(j);
     if (slice.size > 0 && !mechanism.held_row[at(slice.offset)]) continue;
-    double gap = 0.0;
-    for (int r = 0; r < slice.size; ++r) gap = std::hypot(gap, mechanism.e.phi[at(slice.offset + r)]);
-    consider(gap, fmt::format("joint '{}' stays open by {:.6g} m", model.joints[at(j)].name, gap),
-             model.joints[at(j)].location);
+    const JointMiss miss = miss_of(j, mechanism, rows);
+    open.consider(std::hypot(miss.length, miss.angle),
+                  fmt::format("joint '{}' stays open by {}", model.joints[at(j)].name,
+                              words(miss, model.settings.assembly_tolerance)),
+                  model.joints[at(j)].location, j);
   }
-  refuse_open_path(mechanism, rows);
   for (std::size_t i = 0; i < rows.row.size(); ++i) {
+    if (rows.lead[i] < 0) continue;
+    const JointElement& joint = model.joints[at(rows.lead[i])];
     const double gap = std::abs(rows.residual[static_cast<Eigen::Index>(i)]);
-    if (rows.lead[i] >= 0) {
-      const JointElement& joint = model.joints[at(rows.lead[i])];
-      consider(gap,
-               fmt::format("joint '{}' misses its start value by {}", joint.name,
-                           words(gap, joint.ideal_layout().coordinate)),
-               joint.location);
-    }
+    open.consider(
+        gap,
+        fmt::format("joint '{}' misses its start value by {}", joint.name, words(gap, joint.ideal_layout().coordinate)),
+        joint.location);
   }
   for (int d = 0; d < static_cast<int>(model.drivers.size()); ++d) {
     const int r = layout.driver_row(d);
@@ -95,23 +101,64 @@ void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
     const double gap = std::abs(mechanism.e.phi[at(r)]);
     const Driver& driver = model.drivers[at(d)];
     const Coordinate kind = model.joints[at(driver.joint)].ideal_layout().coordinate;
-    consider(gap, fmt::format("driver '{}' misses its value by {}", driver.name, words(gap, kind)), driver.location);
+    open.consider(gap, fmt::format("driver '{}' misses its value by {}", driver.name, words(gap, kind)),
+                  driver.location);
   }
+  return open;
+}
+
+/// "; the sides of its loop are ...", "; joints ... contradict each other": of what cannot be put together by itself.
+/// Where that is nothing of what `open` says, it says this instead.
+std::string why_open(ClosedMechanism& mechanism, const std::optional<LoopGap>& gap, OpenElement& open) {
+  const Model& model = mechanism.model();
+  if (const auto loop = overlong_loop(model, gap ? gap->joint : -1)) {
+    if (std::ranges::count(loop->joints, open.joint) > 0)
+      return (loop->one_side ? "; its loop has one side, " : "; the sides of its loop are ") + loop->text;
+    open.text = (loop->one_side ? "a loop has one side, " : "a loop cannot close; its sides are ") + loop->text;
+    open.location = model.joints[at(loop->joints.front())].location;
+    return {};
+  }
+  const double size = mechanism.system.size();
+  const double missed = gap ? std::hypot(gap->miss.length / size, gap->miss.angle) : open.gap / std::max(1.0, size);
+  const std::vector<Condition> conditions = contradiction(mechanism, gap ? gap->joint : -1, missed);
+  if (conditions.size() < 2 || conditions.size() > most_named) return {};
+  const auto is_open = [&](const Condition& one) {
+    return one.kind == Condition::Kind::joint && one.index == open.joint;
+  };
+  const std::string text = words(conditions, mechanism);
+  if (std::ranges::any_of(conditions, is_open)) return "; " + text;
+  open.text = text;
+  if (conditions.front().kind == Condition::Kind::joint)
+    open.location = model.joints[at(conditions.front().index)].location;
+  return {};
+}
+
+}  // namespace
+
+void throw_open(ClosedMechanism& mechanism, const ClosedMechanism::Rows& rows) {
+  const Model& model = mechanism.model();
+  refuse_open_path(mechanism, rows);
+  OpenElement open = widest_open(mechanism, rows);
+  std::optional<LoopGap> gap = loop_gap(mechanism);
   // A gap of rounding says that there is a position, which the start does not lead to.
-  if (const std::optional<LoopGap> gap = loop_gap(mechanism); gap && gap->size > model.settings.assembly_tolerance) {
+  const bool closes = gap && gap->size <= model.settings.assembly_tolerance;
+  if (gap && !closes) {
     const JointElement& joint = model.joints[at(gap->joint)];
-    text = fmt::format("joint '{}' stays open by {:.6g} m with all others closed", joint.name, gap->size);
-    location = joint.location;
-    text += sides_of_loop(model, gap->joint);
+    open.text = fmt::format("joint '{}' stays open by {} with all others closed", joint.name,
+                            words(gap->miss, model.settings.assembly_tolerance));
+    open.location = joint.location;
+    open.joint = gap->joint;
   }
+  std::string more = closes ? std::string{} : why_open(mechanism, gap, open);
   if (const double far = farthest_body(mechanism); far > LoopGap::far_away * mechanism.system.size())
-    text +=
+    more +=
         fmt::format("; it comes so near only with a body {:.3g} m away: check the directions of slides and slots", far);
-  text += too_many(rows);
-  if (const auto elsewhere = closes_elsewhere(mechanism)) text += "; " + *elsewhere;
-  text += begin_of_paths(mechanism);
+  more += too_many(rows);
+  if (const auto elsewhere = closes_elsewhere(mechanism)) more += "; " + *elsewhere;
+  more += begin_of_paths(mechanism);
   throw Error(
-      Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + text, location,
+      Error::Category::input, "assembly-failed", "the mechanism cannot be put together: " + open.text + more,
+      open.location,
       model.space == Space::spatial
           ? "check lengths, axes of joints and start values, or give the bodies a `pose` closer to the wanted one"
           : "check lengths and start values, or give the bodies a `pose` closer to the wanted one");

@@ -235,6 +235,32 @@ joints: {shoulder: {type: revolute, between: [ground, upper]}, elbow: {type: rev
 drivers: {move: {inverse_kinematics: {frame: fore/pen, path: {x: "0.4 m + 40 mm*cos(360 deg*t/1 s)", y: "50 mm*smooth(t, 0, 1 s)"}, joints: [shoulder, elbow]}}}
 simulation: {end: 1, accuracy: 1 um}
 """
+# A four-bar whose rocker pulls a ram along a rail and, by a stay, a lever: each loop but the first hangs on the first.
+SHAPER = """freeplay: 1
+bodies:
+  ground: {frames: {rocker: [160 mm, 0], lever: {position: [260 mm, 450 mm], angle: 120 deg}, rail: [0, 300 mm]}}
+  crank: {mass: 1, inertia: 1e-3, frames: {pin: [50 mm, 0]}}
+  coupler: {mass: 1, inertia: 1e-3, frames: {end: [160 mm, 0]}, pose: {position: [50 mm, 0], angle: 40 deg}}
+  rocker: {mass: 2, inertia: 1e-2, frames: {pin: [120 mm, 0], tip: [300 mm, 0]}, pose: {position: [160 mm, 0], angle: 90 deg}}
+  stay: {mass: 1, inertia: 1e-3, frames: {end: [100 mm, 0]}, pose: {position: [160 mm, 300 mm]}}
+  lever: {mass: 1, inertia: 1e-3, frames: {end: [150 mm, 0]}, pose: {position: [260 mm, 450 mm], angle: -90 deg}}
+  link: {mass: 1, inertia: 1e-3, frames: {end: [110 mm, 0]}, pose: {position: [160 mm, 300 mm]}}
+  ram: {mass: 4, inertia: 1e-2, pose: {position: [270 mm, 300 mm]}}
+joints:
+  main: {type: revolute, between: [ground, crank]}
+  crankpin: {type: revolute, between: [crank/pin, coupler]}
+  knee: {type: revolute, between: [coupler/end, rocker/pin]}
+  pivot: {type: revolute, between: [ground/rocker, rocker]}
+  foot: {type: revolute, between: [rocker/tip, stay]}
+  eye: {type: revolute, between: [stay/end, lever/end]}
+  post: {type: revolute, between: [ground/lever, lever]}
+  swing: {type: revolute, between: [rocker/tip, link]}
+  wrist: {type: revolute, between: [link/end, ram]}
+  rail: {type: prismatic, between: [ground/rail, ram]}
+drivers: {motor: {joint: main, kind: velocity, value: 60 rpm}}
+initial: {joints: {main: 0}}
+simulation: {end: 0.1, accuracy: 1 um}
+"""
 SLIPS += [
     (PLOTTER, "50 mm*smooth", "50*smooth", "doubtful-length", "has a term of 50 m where the lengths of the mechanism are about"),
     (PLOTTER, "cos(360 deg*t/1 s)", "cos(50*smooth(t, 0, 1 s))", "doubtful-angle", "takes a sine, cosine or tangent of 50 rad"),
@@ -250,6 +276,19 @@ SLIPS += [
 OPEN += [
     (PRESS, "207 GPa", "207", "joint 'knuckle' has no start: its load presses it"),
     (VALVE, "18 mm + 5 mm*", "18 + 5*", "joint 'follower' stays open"),
+    # The shortest loop through 'pivot' is that of the four-bar, which closes.
+    (SHAPER, "frames: {end: [150 mm, 0]}", "frames: {end: [15 mm, 0]}",
+     "the sides of its loop are 'stay' 0.1 m, 'lever' 0.015 m, ground 0.461 m and 'rocker' 0.3 m, and that of ground is longer than the others together (joints 'foot', 'eye', 'post' and 'pivot')"),
+    (SHAPER, "between: [link/end, ram]", "between: [link/end, rocker]", "the sides of its loop are 'link' 0.11 m and 'rocker' 0.3 m, and that of 'rocker' is longer"),
+    (SHAPER, "between: [link/end, ram]", "between: [link/end, rocker/tip]", "its loop has one side, 'link' 0.11 m (joints 'swing' and 'wrist')"),
+    (SHAPER, "rail: [0, 300 mm]", "rail: [0, 700 mm]", "joints 'pivot', 'swing', 'wrist' and 'rail' contradict each other (bodies 'rocker', 'link' and 'ram')"),
+    (SHAPER, "\ndrivers:", "\n  rest: {type: prismatic, between: [ground/lever, ram]}\ndrivers:", "joints 'rail' and 'rest' contradict each other (body 'ram')"),
+    (SHAPER, "coupler/end, rocker/pin]", "coupler/end, rocker]",
+     "joints 'main', 'crankpin', 'knee' and 'pivot' and driver 'motor' contradict each other (bodies 'crank', 'coupler' and 'rocker')"),
+    (SHAPER, "joints: {main: 0}", "joints: {pivot: 270 deg}", "and the start value of 'pivot' contradict each other"),
+    (FLYWHEEL, "joints: {axle:", "frames: {ground/askew: {position: [0, 2], angle: 120 deg}}\njoints: {slide: {type: prismatic, between: [ground/askew, box]}, axle:",
+     "stays open by 1 m and 120 deg with all others closed; joints 'slide' and 'bolts' contradict each other"),
+    (SPUN, "[ground, slide]", "[ground, rod]", "joints 'main', 'big' and 'bore' and driver 'motor' contradict each other (bodies 'crank' and 'rod')"),
 ]
 
 
@@ -276,7 +315,7 @@ class WrongPart(ProgramTest):
     def test_what_is_meant_is_not_doubted(self):
         turned = PRESS.replace("smooth(-body.ram.y, 170 mm, 190 mm)", "if(joint.main.angle > 30 rad, 100, 10)*smooth(joint.head.angle, 20 deg, 40 deg)")
         swings = SWUNG.replace("20 deg*sin(t*3 rad/s)", "0.4*sin(t*3 rad/s) + 0.2*smooth(t, 0 s, 360 s)")
-        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, PLOTTER, turned, swings):
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, PLOTTER, SHAPER, turned, swings):
             with self.subTest(text[:300]):
                 self.assertEqual([], self.messages(text))
 
