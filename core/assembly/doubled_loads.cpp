@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string_view>
 #include <tuple>
 #include <vector>
 
@@ -12,10 +13,14 @@ namespace {
 
 constexpr int looks = 32;  // parts of a run at whose ends values are compared
 
-/// The same text is the same function, but for parameters of templates that it may name.
+/// What comes before the name in its template: parameters have the same values there.
+std::string_view scope_of(std::string_view name) { return name.substr(0, name.rfind('.') + 1); }
+
+/// The same text is the same function, but for parameters of other templates that it may name.
 bool same_values(const AppliedForce& one, const AppliedForce& other, const Settings& settings) {
   if (one.by_motion.empty() != other.by_motion.empty()) return false;
   if (!one.by_motion.empty()) {
+    if (scope_of(one.name) == scope_of(other.name)) return true;
     return std::ranges::none_of(one.text, [](const std::string& text) { return text.find('$') != std::string::npos; });
   }
   for (int i = 0; i <= looks; ++i) {

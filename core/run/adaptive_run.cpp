@@ -14,6 +14,8 @@ constexpr double barely = 1.0 - 1e-6;   // of a step: what is shorter by the rou
 constexpr double close_ahead = 100.0;   // smallest steps
 constexpr double beside_a_root = 1.5;   // power of the step with which errors fall there
 constexpr int most_resolutions = 100;   // at what loads do inside one step
+constexpr double shorter_hunt = 0.25;   // of a step whose event could not be located
+constexpr int most_given_up = 6;        // of such steps, one after the other
 constexpr double least_allowed = 64.0;  // roundings of positions and, per second, of velocities
 
 // Close to a singular position of the constraints a stage loses what its distance is in rounding, and its error falls
@@ -234,7 +236,24 @@ AdaptiveRun::Found AdaptiveRun::end_at_force_kink(Search& search) {
   return Found::no;
 }
 
+// Where a step is so long that its end says nothing, as of what hardly moves on a stiff spring, the same event comes
+// elsewhere in each attempt.
+bool AdaptiveRun::gives_up_hunt(Search& search) {
+  const double shorter = shorter_hunt * (run_.trial.t() - run_.accepted.t());
+  if (search.hunts <= EventPursuit::most_hunts || search.given_up >= most_given_up ||
+      shorter < control_.limits().smallest)
+    return false;
+  search.hunted = {};
+  search.bracket = {};
+  search.hunts = 0;
+  search.dt = shorter;
+  ++search.given_up;
+  ++run_.outcome.rejected;
+  return true;
+}
+
 AdaptiveRun::Found AdaptiveRun::end_at_event(Search& search) {
+  if (gives_up_hunt(search)) return Found::no;
   bool done = false;
   if (!pursuit_.pursue(search.hunted, search.bracket, search.dt, search.hunts, search.goal, done)) return Found::failed;
   if (done) return Found::yes;

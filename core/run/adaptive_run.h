@@ -38,6 +38,7 @@ class AdaptiveRun {
     StepEvents::Passage hunted{};  ///< event at which it is to end
     EventBracket bracket{};        ///< lengths of attempts around it
     int hunts = 0;                 ///< attempts to end there
+    int given_up = 0;              ///< hunts that were given up for a shorter step
     std::size_t detours = 0;
     double asked = 0.0;            ///< length before detours [s]
     bool quick = false;            ///< an input acts for a short time
@@ -55,6 +56,7 @@ class AdaptiveRun {
   Found shorten(Search& search, bool converged);
   bool look_ahead(double tried, double dt);
   Found judge(Search& search);
+  bool gives_up_hunt(Search& search);
   bool resolve_motion_loads(Search& search, double& dt);
   Found end_at_force_kink(Search& search);
   Found end_at_event(Search& search);

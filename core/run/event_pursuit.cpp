@@ -15,8 +15,7 @@ namespace {
 constexpr double event_time = 1e-11;     // a located event is as sharp as this [s], or as its function can be
 constexpr double event_share = 1e-5;     // or as this part of what a position may err by in a step
 constexpr double largest_defect = 0.5;   // of the motion interpolated there, as a part of what a step may err
-constexpr int most_hunts = 40;           // to end a step at an event
-constexpr int early_hunts = 4;           // of these, that trust the interpolated motion
+constexpr int early_hunts = 4;           // of the hunts for an event, that trust the interpolated motion
 constexpr double largest_error = 100.0;  // error of a step, in tolerances, at which event times are usable
 constexpr double little_beyond = 1.01;   // of a step: its motion is continued so far
 

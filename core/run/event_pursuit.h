@@ -10,6 +10,8 @@ namespace freeplay {
 
 class EventPursuit {
  public:
+  static constexpr int most_hunts = 40;  ///< to end a step at an event
+
   EventPursuit(RunContext& run, RunFailure& failure, StepAttempt& attempt, StepInside& inside);
 
   /// The length of the step to try in place of one of the length dt that erred too much: `shorter`, or to an event that
