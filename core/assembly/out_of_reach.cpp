@@ -65,7 +65,17 @@ class Reach {
       };
       const std::optional<Widest> most = widest(range, *exit);
       if (!most || !(most->gap.size > 2.0 * play)) return;
+      // The gap may fall and rise again on the way to the widest.
+      constexpr int pieces = 24;
       double inside = 0.0, outside = most->out;
+      for (int i = 1; i < pieces; ++i) {
+        const double out = most->out * i / pieces;
+        if (gap(out) > 2.0 * play) {
+          outside = out;
+          break;
+        }
+        inside = out;
+      }
       for (int halving = 0; halving < 12; ++halving) {
         const double middle = 0.5 * (inside + outside);
         (gap(middle) > 2.0 * play ? outside : inside) = middle;

@@ -88,7 +88,7 @@ void RunDoubts::judge_motion() {
     run_.outcome.doubts.push_back(std::move(reason));
   }
   if (swings_) run_.outcome.slowest = slow_.slowest(run_.outcome.time, run_.accepted.v(), run_.accepted.a());
-  if (run_.solver.rows().hold_everything()) return;
+  if (run_.solver.rows().hold_everything() || run_.outcome.status == RunStatus::failed) return;
   const FastMotion::Fewest fewest = motion_.fewest();
   const double time = run_.outcome.time - run_.settings.start, size = run_.system.size();
   if (!(fewest.steps < fewest_steps_in_period) || !(time > 0.0)) return;
@@ -144,7 +144,7 @@ bool RunDoubts::watch_row(double dt) {
   if (!recorder_.know_loads()) return false;
   const int joint = run_.watch.add(recorder_.row(), run_.e_accepted);
   // A look at the drivers takes longer than many steps, so it waits until something is wrong.
-  if (!torn_from_ && run_.watch.deeper_than_play())
+  if (!torn_from_ && run_.watch.pressed_through())
     torn_from_ = out_of_reach_from(run_.equations->whole(), run_.equations->start().state);
   const bool runs_away = joint < 0 && run_.watch.runaway() >= 0;
   if (joint < 0 && !runs_away) return true;

@@ -166,10 +166,12 @@ class RunWatch {
   int runaway() const { return runaway_; }
   TrustReason why_runaway(std::span<const double> row) const;
 
-  /// Whether some journal was deeper in its bearing than its play is wide.
-  bool deeper_than_play() const {
+  /// Whether some journal was deeper in its bearing than its play is wide, or pressed with a tenth of what no material
+  /// bears.
+  bool pressed_through() const {
     for (const Contact& contact : contacts_) {
-      if (contact.depth.most > contact.play) return true;
+      if (contact.depth.most > contact.play || contact.hardest > 0.01 * contact.strongest * contact.strongest)
+        return true;
     }
     return false;
   }
