@@ -9,7 +9,7 @@ namespace freeplay {
 
 /// `doubtful-angle` for a length by the angle alone, as of a cam, that is the same all the way round where its angle is
 /// in radians, but not where it is in degrees.
-void doubt_angle_of_curve(const Expression& formula, const TableVariables& variables, const Dimension& of_value,
-                          const CheckedValue& written);
+void doubt_curve(const Expression& formula, const TableVariables& variables, const Dimension& of_value,
+                 const CheckedValue& written);
 
 }  // namespace freeplay

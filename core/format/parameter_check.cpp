@@ -296,7 +296,7 @@ class ParameterCheck {
     }
     const std::optional<Expression> expression = written.formula(variables, unit.dimension);
     if (!expression) return false;
-    doubt_angle_of_curve(*expression, variables, unit.dimension, written);
+    doubt_curve(*expression, variables, unit.dimension, written);
     set_formula(value, *expression, written.node().location_at(0), written.node().verbatim);
     return true;
   }
