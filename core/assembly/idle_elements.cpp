@@ -24,6 +24,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double held = 1e-9;            // motion along an element that rows leave, of a unit vector
+constexpr double held_by_play = 1e-3;    // likewise, by a joint with play
 constexpr double by_sound = 1e-6;        // stop of a body [s]: sound crosses 5 mm of steel in it
 constexpr double far_below_step = 0.01;  // of a fixed step, or of the time between rows
 constexpr double most_beyond = 0.1;      // of the way between the ends of a stop
@@ -150,7 +151,9 @@ class Elements {
           constraints().block(slice.offset, width() * bodies[k], slice.size, width());
       own.middleCols(k * width(), width()) = rate.middleCols(width() * bodies[k], width());
     }
-    return own.norm() > 0.0 && (own * null_space(rows)).norm() <= held * own.norm();
+    // The journal of a loose joint stands off, and what acts at its place turns it a little.
+    const double tolerance = model_.joints[at(joint)].has_play ? held_by_play : held;
+    return own.norm() > 0.0 && (own * null_space(rows)).norm() <= tolerance * own.norm();
   }
 
   void say_idle(const JointElement& element, const JointElement& joint) {

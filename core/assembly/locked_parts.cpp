@@ -61,6 +61,7 @@ class Stills {
       const int row = mechanism_.system.layout().driver_row(d);
       if (row >= 0) mechanism_.held_row[at(row)] = 0;
     }
+    mechanism_.converge();  // journals stood off in their bearings
   }
 
   /// With all joints of its loop.

@@ -291,6 +291,47 @@ OPEN += [
     (SPUN, "[ground, slide]", "[ground, rod]", "joints 'main', 'big' and 'bore' and driver 'motor' contradict each other (bodies 'crank' and 'rod')"),
 ]
 
+# A head that a loose parallel rod keeps upright.
+PARALLEL = """freeplay: 1
+gravity: [0, -9.81]
+bodies:
+  ground: {frames: {rear: [0, 60 mm]}}
+  arm: {mass: 2, inertia: 0.02, com: [150 mm, 0], frames: {end: [300 mm, 0], hook: [60 mm, 0]}, pose: {angle: 30 deg}}
+  rod: {mass: 0.4, inertia: 4e-3, com: [150 mm, 0], frames: {end: [300 mm, 0]}, pose: {position: [0, 60 mm], angle: 30 deg}}
+  head: {mass: 0.5, inertia: 1e-3, com: [20 mm, 30 mm], frames: {back: [0, 60 mm]}, pose: {position: [259.81 mm, 150 mm]}}
+joints:
+  shoulder: {type: revolute, between: [ground, arm]}
+  rear: {type: revolute, between: [ground/rear, rod]}
+  front: {type: revolute, between: [arm/end, head]}
+  link:
+    type: revolute
+    bearing: rod/end
+    journal: head/back
+    clearance: {bearing_radius: 5 mm, radial_clearance: 25 um, length: 14 mm, material: {E: 70 GPa, nu: 0.33}, contact: {law: flores, restitution: 0.7}, initial: loaded}
+forces:
+  balance: {type: spring-damper, between: [ground/rear, arm/hook], stiffness: 1.2 N/mm, free_length: 40 mm}
+  rub: {type: joint-friction, kind: rotational, between: [rod/end, head/back], friction: 0.01 N*m}
+drivers: {motor: {joint: shoulder, kind: angle, value: "30 deg + 20 deg*sin(t*3 rad/s)"}}
+simulation: {end: 0.5 s, accuracy: 1 um}
+"""
+TORQUE = PRESS.replace("drivers: {motor: {joint: main, kind: velocity, value: 60 rpm}}", "").replace(
+    "forces: {blank:", "forces: {turn: {type: torque, on: crank, value: 40 N*m}, rub: {type: joint-friction, between: [ground/slide, ram], friction: 20 N}, blank:")
+NAMED = PRESS.replace("15 kN*", "$load*").replace("simulation:", "parameters: {load: 15 kN}\nsimulation:")
+STOPPED = SWUNG.replace("forces: {blank:", "forces: {stop: {type: joint-stop, kind: rotational, between: [ground, crank], lower: -120 deg, upper: -60 deg, stiffness: 100 N*m/rad}, blank:")
+SLIPS += [
+    (PARALLEL, "between: [ground/rear, rod]", "between: [ground, rod]", "same-frame",
+     "joints 'shoulder' and 'rear' hold 'ground' at one place, so that 'arm', 'rod', 'head' move as one body"),
+    (PARALLEL, "kind: rotational, between: [rod/end, head/back], friction: 0.01 N*m", "between: [rod/end, head/back], friction: 3 N", "idle-force",
+     "'rub' moves nothing: joint 'link' keeps 'head' from moving"),
+    (TORQUE, "  guide: {type: prismatic, between: [ground/slide, ram]}\n", "", "left-free", "no joint guides 'ram' along it against 'ground'"),
+    (FLYWHEEL, "axle: 10", "axle: 0", "nothing-acts", "there is no gravity, force, driver or start speed"),
+    (CRUSHER, "value: 26", "value: 720", "doubtful-speed", "that is 6875 rpm: write '720 deg/s' or '720 rpm'"),
+    (CRUSHER, "jaw: {mass: 300", "jaw: {mass: 0.3", "doubtful-inertia", "but its frames reach 0.6 m: check mass and inertia"),
+    (STOPPED, "20 deg*sin", "90 deg*sin", "doubtful-value", "driver 'motor' moves joint 'main' 60 deg beyond the ends of 'stop'"),
+    (NAMED, "forces: {blank:", 'forces: {again: {type: force, at: ram, value: [0, "$load*smooth(-body.ram.y, 170 mm, 190 mm)"]}, blank:', "duplicate-force",
+     "'blank' is the same force at the same place as 'again'"),
+]
+
 
 class WrongPart(ProgramTest):
     def messages(self, text, code=0):
@@ -315,13 +356,20 @@ class WrongPart(ProgramTest):
     def test_what_is_meant_is_not_doubted(self):
         turned = PRESS.replace("smooth(-body.ram.y, 170 mm, 190 mm)", "if(joint.main.angle > 30 rad, 100, 10)*smooth(joint.head.angle, 20 deg, 40 deg)")
         swings = SWUNG.replace("20 deg*sin(t*3 rad/s)", "0.4*sin(t*3 rad/s) + 0.2*smooth(t, 0 s, 360 s)")
-        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, PLOTTER, SHAPER, turned, swings):
+        for text in (STRUT, LAMP, HOIST, FORCED, FLYWHEEL, CRUSHER, SCREEN, YOKE, SPUN, PRESS, VALVE, PLOTTER, SHAPER, PARALLEL, TORQUE, NAMED, STOPPED, turned, swings):
             with self.subTest(text[:300]):
                 self.assertEqual([], self.messages(text))
 
     def test_a_curve_in_metres_is_doubted_where_nothing_can_be_put_together(self):
         found = self.messages(VALVE.replace("18 mm + 5 mm*", "18 + 5*"), code=3)
         self.assertTrue(any(one == "doubtful-length" and "'joints.follower.curve' is 23 m" in message for one, message in found), found)
+        found = self.messages(VALVE.replace("5 mm*(", "5*("))
+        self.assertTrue(any(one == "doubtful-length" and "goes from 0.018 m to 5.018 m" in message for one, message in found), found)
+
+    def test_what_falls_as_a_whole_is_named(self):
+        chain = LAMP[:LAMP.index("forces:")].replace("hinge: {type: revolute, between: [ground, arm]}, ", "") + "simulation: {end: 0.5, accuracy: 1e-6}\n"
+        self.assertEqual([("not-connected", "no joint or force ties any body to ground, so that all of them fall: connect one, or give a velocity")], self.messages(chain))
+        self.assertEqual([], self.messages(chain.replace("head: {mass: 0.4,", "head: {velocity: {angular: 1}, mass: 0.4,")))
 
     def verdict(self, text):
         self.freeplay("run", self.write("m.yaml", text), "--out", "r", "--force")
