@@ -54,7 +54,6 @@ class Examination {
       doubt("dead-point", words(*dead, model_), driver.name, driver.location);
     }
     find_loose_ends();
-    find_what_acts();
     const auto doubt_element = [&](const char* id, const std::string& message, const JointElement& element) {
       doubt(id, message, element.name, element.location);
     };
@@ -155,19 +154,6 @@ class Examination {
 
   /// A robot file by itself, which cannot say what acts.
   bool is_robot() const { return model_.text.find('<') == model_.text.find_first_not_of(" \t\r\n"); }
-
-  /// Whether anything can move the mechanism.
-  void find_what_acts() {
-    const auto starts = [](const JointElement& joint) {
-      return is_force_element(joint) || gives_velocity(joint) || (joint.start_speed && joint.start_speed->value != 0.0);
-    };
-    const auto moves = [](const Body& body) { return body.gravity != Vector3{} || has_velocity(body); };
-    if (model_.bodies.empty() || is_robot() || !model_.drivers.empty() || !model_.forces.empty() ||
-        std::ranges::any_of(model_.joints, starts) || std::ranges::any_of(model_.bodies, moves))
-      return;
-    doubt("nothing-acts", "nothing moves the mechanism: there is no gravity, force, driver or start speed",
-          model_.bodies[0].name, model_.bodies[0].location);
-  }
 
   /// Bodies that hang together by joints alone, which nothing moves and nothing ties to ground. `island`: of each body;
   /// -1: none.

@@ -10,9 +10,8 @@ namespace {
 
 /// The reason of the verdict for a warning of this id; null: it says nothing of the numbers.
 const char* reason_of_warning(std::string_view id) {
-  constexpr std::string_view structure[] = {"left-free",       "same-frame",      "not-connected",
-                                            "duplicate-joint", "duplicate-force", "play-bypassed",
-                                            "locked",          "idle-force",      "nothing-acts"};
+  constexpr std::string_view structure[] = {"left-free",       "same-frame",    "not-connected", "duplicate-joint",
+                                            "duplicate-force", "play-bypassed", "locked",        "idle-force"};
   if (id == "unstable-start" || id == "dead-point") return "unstable-start";
   if (std::ranges::find(structure, id) != std::end(structure)) return "doubtful-structure";
   return id.starts_with("doubtful") ? "doubtful-input" : nullptr;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/left_free.h"
 #include "assembly/out_of_reach.h"
 #include "assembly/play_rows.h"
 #include "assembly/row_space.h"
@@ -15,6 +16,7 @@
 #include "component/joint_roles.h"
 #include "linear/singular_values.h"
 #include "model/element_name.h"
+#include "model/force_element.h"
 #include "model/whole_mass.h"
 
 namespace freeplay {
@@ -36,6 +38,15 @@ bool in_a_loop(const Model& model, int without) {
     if (j != without && joint.gear < 0) groups.unite(place(joint.marker_a), place(joint.marker_b));
   }
   return groups.together(place(model.joints[at(without)].marker_a), place(model.joints[at(without)].marker_b));
+}
+
+bool anything_acts(const Model& model) {
+  const auto starts = [](const JointElement& joint) {
+    return is_force_element(joint) || gives_velocity(joint) || (joint.start_speed && joint.start_speed->value != 0.0);
+  };
+  const auto moves = [](const Body& body) { return body.gravity != Vector3{} || has_velocity(body); };
+  return !model.drivers.empty() || !model.forces.empty() || std::ranges::any_of(model.joints, starts) ||
+         std::ranges::any_of(model.bodies, moves);
 }
 }  // namespace
 
@@ -84,6 +95,12 @@ void RunDoubts::note_motion() {
 }
 
 void RunDoubts::judge_motion() {
+  if (!anything_acts(run_.model)) {
+    run_.outcome.doubts.push_back(
+        {.id = "doubtful-structure",
+         .level = Trust::doubtful,
+         .message = "nothing moves the mechanism: there is no gravity, force, driver or start speed"});
+  }
   for (TrustReason& reason : run_.path_edges.doubts(run_.outcome.time, run_.adaptive ? 0.0 : run_.settings.step)) {
     run_.outcome.doubts.push_back(std::move(reason));
   }

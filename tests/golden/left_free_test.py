@@ -75,7 +75,7 @@ class LeftFree(ProgramTest):
                 self.assertEqual([], self.doubts(CRANE % place))
 
     def test_a_run_names_what_moves_although_no_doubt_does(self):
-        words = "with all drivers at rest 'hook' still moves: where that is not meant, a joint is missing"
+        words = "with all drivers at rest 'hook' still moves: where that is not meant, a joint or a driver is missing"
         text = (CRANE % "0, 1").replace("end: 15 s", "end: 0.1 s")
         self.assertIn(words, self.freeplay("run", self.write("m.yaml", text), "--out", "r")[0])
         for old, new in (("0, 1", "4, 5"), ("drivers: {drive: {joint: rail, kind: position, value: \"6 m*smooth(t, 1 s, 8 s)\"}}\n", "")):

@@ -2,6 +2,7 @@
 import math
 import unittest
 
+from program import mechanism
 from start_values import BALL, RUN, StartTest
 
 # A crank moves the knee of two links between a hinge above and a ram below. Link angles of -75 and -105 degrees fit
@@ -126,6 +127,16 @@ class Start(StartTest):
             self.assertEqual("angle", moved[0]["quantity"])
             self.assertAlmostEqual(abs(-90 - sign * 15 - lower), math.degrees(moved[0]["by"]), places=9)
             self.assertEqual(abs(-90 - sign * 15 - lower) > 10, moved[0]["far"])
+
+    def test_a_pose_that_is_wrong_by_half_a_turn_moves_no_other_body(self):
+        for name, body, old, new in (("pantograph", "inner", "[60 mm, 80 mm], angle: -53.13 deg", "[60 mm, 80 mm], angle: 126.87 deg"),
+                                     ("windscreen-wiper", "tie", "[150 mm, -40 mm]}", "[150 mm, -40 mm], angle: 175 deg}")):
+            with self.subTest(name):
+                with open(mechanism("gallery/" + name), encoding="utf-8") as file:
+                    text = file.read()
+                self.assertEqual(1, text.count(old))
+                self.start(text.replace(old, new))
+                self.assertEqual({body}, {one["body"] for one in self.changes["moved"] if one["far"]})
 
     def test_two_positions_that_are_equally_near_are_both_named(self):
         for down in (270, -810, 990, -90):

@@ -385,6 +385,26 @@ simulation: {end: 1 s, accuracy: 1 um}
             self.run_model(ram % (moved % part))
             self.assertNotIn("load-size", self.ids(), self.trust)
 
+    def test_a_force_that_no_part_of_that_mass_bears_is_doubtful(self):
+        """Of 70 kN m in place of 70 N m on a planetary gear of 7 kg the pin of a planet has 1.9 MN."""
+        self.freeplay("run", mechanism("gallery/gear-train"), "--set", "load=70 kN*m", "--end", "50 ms", "--out", "r", "--force")
+        reason, = [r for r in json.loads(self.read("r", "summary.json"))["trust"]["reasons"] if r["id"] == "load-size"]
+        self.assertEqual("joint 'pin'", reason["element"])
+        self.assertIn("'planet' of 0.5 kg", reason["message"])
+        self.assertIn("force 'winch' of 7e+04 N m", reason["message"])
+
+    def test_a_wheel_that_would_burst_is_doubtful(self):
+        wheel = ("freeplay: 1\nbodies: {frame: {mass: 500, inertia: 50}, wheel: {mass: 1, inertia: 0.01}}\n"
+                 "joints: {bolts: {type: fixed, between: [ground, frame]}, axle: {type: revolute, between: [frame, wheel]}}\n"
+                 "forces: {drag: {type: joint-friction, kind: rotational, between: [frame, wheel], friction: 1e-3}}\n"
+                 "initial: {speeds: {axle: %s rad/s}}\nsimulation: {end: 0.01, accuracy: 1 um}\n")
+        self.run_model(wheel % 11000)
+        reason, = [r for r in self.trust["reasons"] if r["id"] == "body-speed"]
+        self.assertEqual("body 'wheel'", reason["element"])
+        self.assertIn("turns with 1.1e+03 m/s at its radius of gyration", reason["message"])
+        self.run_model(wheel % 9000)
+        self.assertNotIn("body-speed", self.ids())
+
     def test_a_joint_driven_through_its_stop_is_doubtful(self):
         text = ("freeplay: 1\nbodies: {arm: {mass: 1, inertia: 0.01}}\njoints: {axle: {type: revolute, between: [ground, arm]}}\n"
                 "forces: {stop: {type: joint-stop, kind: rotational, between: [ground, arm], lower: -10 deg, upper: 90 deg, stiffness: 100}}\n"
@@ -394,8 +414,8 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.assertEqual("force 'stop'", reason["element"])
         self.assertIn("through its stop", reason["message"])
         self.run_model(text % "40 deg + 80 deg*sin(2*pi*t)")
-        self.assertEqual(["law-range"], self.ids())
-        self.run_model(text % "40 deg + 60 deg*sin(2*pi*t)")
+        self.assertIn("law-range", self.ids())
+        self.run_model(text % "40 deg + 51 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
     def test_counts_and_sums_beside_a_peak_with_noise_have_theirs(self):

@@ -324,7 +324,6 @@ SLIPS += [
     (PARALLEL, "kind: rotational, between: [rod/end, head/back], friction: 0.01 N*m", "between: [rod/end, head/back], friction: 3 N", "idle-force",
      "'rub' moves nothing: joint 'link' keeps 'head' from moving"),
     (TORQUE, "  guide: {type: prismatic, between: [ground/slide, ram]}\n", "", "left-free", "no joint guides 'ram' along it against 'ground'"),
-    (FLYWHEEL, "axle: 10", "axle: 0", "nothing-acts", "there is no gravity, force, driver or start speed"),
     (CRUSHER, "value: 26", "value: 720", "doubtful-speed", "that is 6875 rpm: write '720 deg/s' or '720 rpm'"),
     (CRUSHER, "jaw: {mass: 300", "jaw: {mass: 0.3", "doubtful-inertia", "but its frames reach 0.6 m: check mass and inertia"),
     (STOPPED, "20 deg*sin", "90 deg*sin", "doubtful-value", "driver 'motor' moves joint 'main' 60 deg beyond the ends of 'stop'"),
@@ -365,6 +364,9 @@ class WrongPart(ProgramTest):
         self.assertTrue(any(one == "doubtful-length" and "'joints.follower.curve' is 23 m" in message for one, message in found), found)
         found = self.messages(VALVE.replace("5 mm*(", "5*("))
         self.assertTrue(any(one == "doubtful-length" and "goes from 0.018 m to 5.018 m" in message for one, message in found), found)
+
+    def test_a_mechanism_on_which_nothing_acts_is_in_the_verdict(self):
+        self.assertEqual([("doubtful-structure", None)], self.verdict(FLYWHEEL.replace("axle: 10", "axle: 0")))
 
     def test_what_falls_as_a_whole_is_named(self):
         chain = LAMP[:LAMP.index("forces:")].replace("hinge: {type: revolute, between: [ground, arm]}, ", "") + "simulation: {end: 0.5, accuracy: 1e-6}\n"
