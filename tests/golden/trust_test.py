@@ -415,7 +415,7 @@ simulation: {end: 1 s, accuracy: 1 um}
         self.assertIn("through its stop", reason["message"])
         self.run_model(text % "40 deg + 80 deg*sin(2*pi*t)")
         self.assertIn("law-range", self.ids())
-        self.run_model(text % "40 deg + 51 deg*sin(2*pi*t)")
+        self.run_model(text % "40 deg + 49 deg*sin(2*pi*t)")
         self.assertEqual([], self.ids())
 
     def test_counts_and_sums_beside_a_peak_with_noise_have_theirs(self):
