@@ -112,9 +112,9 @@ std::string start_text(const Model& model, const Start& start) {
   const std::size_t shown = std::min(bodies.size(), most_names);
   std::string names = fmt::format("'{}'", fmt::join(bodies.begin(), bodies.begin() + static_cast<long>(shown), "', '"));
   if (shown < bodies.size()) names += fmt::format(" and {} more", bodies.size() - shown);
-  const std::string free =
-      fmt::format("  {:<18}  with all drivers at rest {} still move{}: where that is not meant, a joint or a driver is missing\n",
-                  "left_free", names, bodies.size() == 1 ? "s" : "");
+  const std::string free = fmt::format(
+      "  {:<18}  with all drivers at rest {} still move{}: where that is not meant, a joint or a driver is missing\n",
+      "left_free", names, bodies.size() == 1 ? "s" : "");
   return free + moved;
 }
 
