@@ -69,7 +69,7 @@ std::string before_window(const RunRecord& record) {
   return text;
 }
 
-/// Where rows are farther apart than a peak lasts, and what they miss is more than chance.
+/// Where rows are farther apart than a peak lasts.
 std::string missed_by_rows(const RunRecord& record) {
   const Statistics& statistics = record.statistics;
   const auto all = statistics.largest().in_window(), written = statistics.largest().written();
@@ -81,11 +81,13 @@ std::string missed_by_rows(const RunRecord& record) {
   double least = 1.0 / clearly;
   for (std::size_t j = 0; j < joints.size(); ++j) {
     const double peak = all[force(j)], share = written[force(j)] / peak;
-    if (peak - written[force(j)] <= statistics.largest().noise().of(force(j))) continue;
     if (!joints[j].is_force && peak > of_interest * largest && share < least) worst = j, least = share;
   }
   if (worst == joints.size() || !(written[force(worst)] >= 0.0)) return {};
   const double noise = statistics.largest().noise().of(force(worst));
+  // Rounded to what is known of it the peak may be below what rows show.
+  const double place = noise > 0.0 ? std::pow(10.0, std::floor(std::log10(noise))) : 0.0;
+  if (place > 0.0 && std::round(all[force(worst)] / place) * place <= written[force(worst)]) return {};
   const std::string seen = digits(written[force(worst)], noise);
   return fmt::format("  rows {:g} s apart miss peaks between them: they show {} N of the {} in {}\n",
                      record.model.settings.interval, seen, figure_text(all[force(worst)], "N", noise),
