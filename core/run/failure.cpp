@@ -221,6 +221,18 @@ std::string RunFailure::hardest_worker(double least) const {
   return text;
 }
 
+// Of joints and springs the one that stores most at the end of the step that was made, if it is more than `least` [J].
+std::string RunFailure::what_stores(double least) const {
+  std::string text;
+  for (std::size_t j = 0; j < run_.model.joints.size(); ++j) {
+    const double stored = run_.e_trial->potential[j];
+    if (!(stored > least)) continue;
+    least = stored;
+    text = fmt::format("; {} would store {:.3g} J", written_name(run_.model.joints[j]), stored);
+  }
+  return text;
+}
+
 // Contacts are overshot by steps; constraints alone come to this where the mechanism cannot go on.
 std::string RunFailure::why_energy_grows(double dt, double gained) {
   if (run_.model.clearance_joints() == 0) {
@@ -231,8 +243,11 @@ std::string RunFailure::why_energy_grows(double dt, double gained) {
       "t = {:.9g} s: energy would grow by {:.3g} J in a step of {:.3g} s, more than everything that acts could put in",
       run_.accepted.t(), gained, dt);
   const int joint = hardest_joint(ground);
-  if (joint >= 0)
+  if (joint >= 0) {
     text += fmt::format("; joint '{}' pulls hardest", run_.model.joints[static_cast<std::size_t>(joint)].name);
+  } else {
+    text += what_stores(0.5 * gained);
+  }
   const std::string cause = likely_cause_at(run_.accepted.t(), dt, joint);
   if (!cause.empty()) return text + std::string(cause_words) + cause;
   return text + std::string(run_.settings.accuracy > 0.0 ? advice::jump : advice::accuracy);

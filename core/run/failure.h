@@ -64,6 +64,7 @@ class RunFailure {
   [[gnu::cold]] std::string why_singular(double t) const;
   [[gnu::cold]] std::string why_beyond_bounds(double t, int joint) const;
   int hardest_joint(BodyId body) const;
+  [[gnu::cold]] std::string what_stores(double least) const;
 
   RunContext& run_;
   int failed_joint_ = -1;  // whose law the run came to the end of

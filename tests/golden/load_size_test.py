@@ -57,6 +57,16 @@ class LoadSize(ProgramTest):
         self.judge(wheel % 9000)
         self.assertNotIn("body-speed", self.ids())
 
+    def test_a_step_that_makes_energy_names_what_would_store_it(self):
+        """A Geneva wheel without its axle is thrown out, and its slot closes round the pin."""
+        with open(mechanism("gallery/geneva"), encoding="utf-8") as file:
+            lines = file.readlines()
+        axle = [line for line in lines if line.startswith("  wheel: {type: revolute")]
+        self.assertEqual(1, len(axle))
+        self.write("m.yaml", "".join(line for line in lines if line not in axle).replace(", wheel: 0}", "}"))
+        _, err = self.freeplay("run", "m.yaml", "--out", "r", "--force", "--quiet", code=4)
+        self.assertRegex(err, r"energy would grow by \d+ J .*; force 'quarter\d\.drive' would store \d+ J")
+
 
 if __name__ == "__main__":
     unittest.main()
