@@ -375,9 +375,15 @@ class Assembler {
     start.structure = examine_structure(system_, released, start.state, closed_, e_, dead_start(system_, start.state),
                                         unstable_start(system_, start.state));
     doubt_locked(system_, start.state, start.structure);
-    evaluate(term_position | term_velocity | term_coordinate);
-    doubt_elements(closed_, e_, start.structure);
+    judge_elements(state, start.structure);
     return start;
+  }
+
+  void judge_elements(const State& state, Structure& structure) {
+    Evaluation e(system_);
+    if (!system_.evaluate(point(state), term_position | term_velocity | term_coordinate, e))
+      throw_fault(model_, e.fault);
+    doubt_elements(system_, e, closed_, e_, structure);
   }
 
   void initialize_joints(State& state) {

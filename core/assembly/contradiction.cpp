@@ -263,23 +263,26 @@ class Reduction {
       kept_ = missed;
   }
 
-  Kept reduced(std::vector<std::size_t> order) {
-    // Joints last, as what they alone contradict says more.
-    std::ranges::stable_partition(order, [&](std::size_t i) {
-      const Condition& one = conditions_[i];
-      return one.kind != Condition::Kind::joint || model_.joints[at(one.index)].gear >= 0;
-    });
-    Kept missed;
-    for (const std::size_t i : order) {
-      if (!kept_[i] || is_open(i) || fulfilment_.too_long()) continue;
-      Kept rest = kept_;
-      drop(i, rest);
-      leave_out_chains(rest);
-      if (std::ranges::count(rest, 1) == 0 || fulfilment_.holds(rest, few_starts, missed)) continue;
-      kept_ = rest;
-      take_if_open(missed);
+  // Joints last, as what they alone contradict says more.
+  Kept reduced(const std::vector<std::size_t>& order) {
+    for (const bool joints : {false, true}) {
+      for (const std::size_t i : order) {
+        if (is_joint(i) == joints) leave_out(i);
+      }
     }
     return kept_;
+  }
+  void leave_out(std::size_t i) {
+    if (!kept_[i] || is_open(i) || fulfilment_.too_long()) return;
+    Kept rest = kept_, missed;
+    drop(i, rest);
+    leave_out_chains(rest);
+    if (std::ranges::count(rest, 1) == 0 || fulfilment_.holds(rest, few_starts, missed)) return;
+    kept_ = rest;
+    take_if_open(missed);
+  }
+  bool is_joint(std::size_t i) const {
+    return conditions_[i].kind == Condition::Kind::joint && model_.joints[at(conditions_[i].index)].gear < 0;
   }
 
   std::vector<std::size_t> by_place() const {
@@ -290,7 +293,7 @@ class Reduction {
 
   // From those that are most joints away from the open one on, of equal ones from the end of the file on.
   std::vector<std::size_t> by_distance() const {
-    std::vector<std::size_t> away(model_.bodies.size() + 1, model_.joints.size()), order = by_place();
+    std::vector<std::size_t> away(model_.bodies.size() + 1, model_.joints.size()), order;
     const auto nearer = [&](int j) -> std::size_t {
       const JointElement& joint = model_.joints[at(j)];
       return std::min(away[at(body_at(joint.marker_a))], away[at(body_at(joint.marker_b))]);
@@ -307,11 +310,11 @@ class Reduction {
         }
       }
     }
-    std::ranges::reverse(order);
-    std::ranges::stable_sort(order, std::ranges::greater{}, [&](std::size_t i) {
-      const Condition& one = conditions_[i];
-      return one.kind == Condition::Kind::joint && model_.joints[at(one.index)].gear < 0 ? nearer(one.index) : 0;
-    });
+    for (std::size_t far = model_.joints.size() + 1; far-- > 0;) {
+      for (std::size_t i = conditions_.size(); i-- > 0;) {
+        if ((is_joint(i) ? nearer(conditions_[i].index) : 0) == far) order.push_back(i);
+      }
+    }
     return order;
   }
 
@@ -353,9 +356,7 @@ class Reduction {
   // Bodies that hang on the others by one joint can follow them anywhere.
   void leave_out_chains(Kept& kept) const {
     for (std::size_t i = 0; i < kept.size(); ++i) {
-      const bool joint =
-          conditions_[i].kind == Condition::Kind::joint && model_.joints[at(conditions_[i].index)].gear < 0;
-      if (!kept[i] || !joint) continue;
+      if (!kept[i] || !is_joint(i)) continue;
       DisjointSets bodies(static_cast<int>(model_.bodies.size()) + 1);
       for (std::size_t other = 0; other < kept.size(); ++other) {
         if (other == i || !kept[other]) continue;
@@ -392,8 +393,12 @@ std::string words(const std::vector<Condition>& conditions, const ClosedMechanis
     if (std::ranges::count(bodies, name) == 0) bodies.push_back(name);
   };
   for (const Condition& one : conditions) {
-    if (one.kind == Condition::Kind::driver)
-      others.push_back(fmt::format("driver '{}'", model.drivers[at(one.index)].name));
+    if (one.kind == Condition::Kind::driver) {
+      const Driver& driver = model.drivers[at(one.index)];
+      others.push_back(driver.kind == DriverKind::velocity
+                           ? fmt::format("the start value of '{}'", model.joints[at(driver.joint)].name)
+                           : fmt::format("driver '{}'", driver.name));
+    }
     if (one.kind == Condition::Kind::start)
       others.push_back(
           fmt::format("the start value of '{}'", model.joints[at(mechanism.leads[at(one.index)].joint)].name));

@@ -38,8 +38,15 @@ constexpr int looks_of_run = 256;       // at what drivers prescribe
 
 class Elements {
  public:
-  Elements(const System& system, const Evaluation& e, Structure& structure)
-      : system_(system), model_(system.model()), e_(e), rates_(system, e), structure_(structure) {}
+  Elements(const System& system, const Evaluation& e, const System& closed, const Evaluation& shut,
+           Structure& structure)
+      : system_(system),
+        model_(system.model()),
+        e_(e),
+        closed_(closed),
+        shut_(constraint_matrix(closed.jacobian(), shut)),
+        rates_(system, e),
+        structure_(structure) {}
 
   void judge() {
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
@@ -107,7 +114,8 @@ class Elements {
     if (std::ranges::any_of(model_.joints, joins)) return false;
     const double* axes = e_.markers[at(element.marker_a)].rotation;
     const Eigen::Vector3d across(axes[1], axes[4], axes[7]);
-    if ((rates_.of_ends(element, across, 0.0, 0.0) * motions()).norm() <= counts_as_motion) return false;
+    const MatrixXd moving = rates_.of_ends(element, across, 0.0, 0.0);
+    if (shut_.rows() > 0 && (moving * null_space(shut_)).norm() <= counts_as_motion) return false;
     doubt("left-free",
           fmt::format("'{}' acts along x of '{}', but no joint guides '{}' along it against '{}': is a guide missing",
                       element.name, model_.markers[at(element.marker_a)].name, body_name(element.marker_b),
@@ -141,14 +149,13 @@ class Elements {
   /// A joint whose rows let the element not move where it stands; a line between two points turns, and may move later.
   bool leaves_nothing(int joint, const MatrixXd& rate, const JointElement& element) {
     if (element.ideal_layout().coordinate == Coordinate::none) return false;
-    const Slice slice = system_.layout().rows(joint);
+    const Slice slice = closed_.layout().rows(joint);
     if (slice.size == 0) return false;
     const BodyId bodies[2] = {body_of(element.marker_a), body_of(element.marker_b)};
     MatrixXd rows = MatrixXd::Zero(slice.size, 2 * width()), own = MatrixXd::Zero(1, 2 * width());
     for (int k = 0; k < 2; ++k) {
       if (bodies[k] == ground) continue;
-      rows.middleCols(k * width(), width()) =
-          constraints().block(slice.offset, width() * bodies[k], slice.size, width());
+      rows.middleCols(k * width(), width()) = shut_.block(slice.offset, width() * bodies[k], slice.size, width());
       own.middleCols(k * width(), width()) = rate.middleCols(width() * bodies[k], width());
     }
     // The journal of a loose joint stands off, and what acts at its place turns it a little.
@@ -424,6 +431,8 @@ class Elements {
   const System& system_;
   const Model& model_;
   const Evaluation& e_;
+  const System& closed_;
+  const MatrixXd shut_;  // its constraints
   ElementRates rates_;
   Structure& structure_;
   MatrixXd constraints_;             // once wanted
@@ -432,9 +441,10 @@ class Elements {
 
 }  // namespace
 
-void doubt_elements(const System& closed, const Evaluation& at_start, Structure& structure) {
-  if (closed.layout().nv() > Structure::most_examined) return;
-  Elements(closed, at_start, structure).judge();
+void doubt_elements(const System& system, const Evaluation& at_start, const System& closed, const Evaluation& shut,
+                    Structure& structure) {
+  if (system.layout().nv() > Structure::most_examined) return;
+  Elements(system, at_start, closed, shut, structure).judge();
 }
 
 }  // namespace freeplay

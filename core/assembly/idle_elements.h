@@ -11,8 +11,10 @@ namespace freeplay {
 /// that stops what it works on, through joints and drivers, faster than sound crosses it, and for a stop that starts
 /// beyond an end by a tenth of its way, or beyond which a driver of the same bodies moves by a fiftieth;
 /// `doubtful-angle` for a torsion spring that starts wound by a whole turn, more or less by an eighth of it, and
-/// `doubtful-value` for strands round wheels that joints let turn by another ratio. `closed` has all clearances closed
-/// and stands at the start, `at_start` has its positions and coordinates.
-void doubt_elements(const System& closed, const Evaluation& at_start, Structure& structure);
+/// `doubtful-value` for strands round wheels that joints let turn by another ratio. `system` stands at the start,
+/// `at_start` has its positions and coordinates; `closed` has all clearances closed, `shut` is evaluated at the same
+/// positions.
+void doubt_elements(const System& system, const Evaluation& at_start, const System& closed, const Evaluation& shut,
+                    Structure& structure);
 
 }  // namespace freeplay

@@ -17,7 +17,10 @@ double BearingTable::angle(std::size_t sector) {
 }
 
 ClearanceStatistics::ClearanceStatistics(const Model& model, const Joints& joints, const Channels& channels)
-    : channels_(channels), from_(model.settings.start + model.settings.discard), index_(model.joints.size(), -1) {
+    : channels_(channels),
+      from_(model.settings.start + model.settings.discard),
+      index_(model.joints.size(), -1),
+      sum_noise_(from_, from_, 0) {
   for (int j = 0; j < static_cast<int>(index_.size()); ++j) {
     const JointColumns& columns = channels.joints[at(j)];
     if (columns.normal_force < 0) continue;
@@ -35,6 +38,7 @@ ClearanceStatistics::ClearanceStatistics(const Model& model, const Joints& joint
     joint.is_socket = is_bearing && !planar && layout.coordinate != Coordinate::angle;
     joint.area = 2.0 * (layout.smaller_radius + layout.clearance) * layout.contact_length;
   }
+  sum_noise_ = MeanNoise(from_, model.settings.end, 2 * joints_.size());
 }
 
 ClearanceStatistics::Rates ClearanceStatistics::rates(const OfJoint& joint, std::span<const double> row,
@@ -101,6 +105,16 @@ void ClearanceStatistics::add(std::span<const double> row, const Evaluation& e, 
   duration_ += 2.0 * half;
   time_ = t;
   seen_ = true;
+  if (!sum_noise_.is_due(t)) return;
+  double* to = sum_noise_.note(t).data();
+  for (const OfJoint& joint : joints_) *to++ = joint.sliding, *to++ = joint.work;
+}
+
+ClearanceStatistics::SumNoise ClearanceStatistics::sum_noise(int joint, double contacts) const {
+  const auto index = static_cast<std::size_t>(index_[at(joint)]);
+  const OfJoint& sums = joints_[index];
+  return {sum_noise_.of(2 * index, time_, sums.sliding, contacts),
+          sum_noise_.of(2 * index + 1, time_, sums.work, contacts)};
 }
 
 void ClearanceStatistics::add_contact(int joint, double end, const ContactRecord& contact) {

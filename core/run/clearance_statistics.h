@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/channel.h"
+#include "run/mean_noise.h"
 #include "run/sink.h"
 #include "system/system.h"
 
@@ -40,7 +41,7 @@ struct BearingTable {
 /// counts half of it, in its own sector.
 class ClearanceStatistics {
  public:
-  ClearanceStatistics(const Model& model, const Joints& joints, const Channels& channels);
+  [[gnu::cold]] ClearanceStatistics(const Model& model, const Joints& joints, const Channels& channels);
 
   bool active() const { return !joints_.empty(); }
   /// A row at the end of a step, in rising order of time and from the first instant that counts on; `e` is evaluated
@@ -56,12 +57,18 @@ class ClearanceStatistics {
   /// Whether the joint has figures, and whether it has a bearing angle.
   bool has(int joint) const { return index_[static_cast<std::size_t>(joint)] >= 0; }
   bool has_table(int joint) const { return has(joint) && of(joint).is_bearing; }
-  PlayFigures figures(int joint) const;
+  [[gnu::cold]] PlayFigures figures(int joint) const;
   BearingTable table(int joint) const;
+  /// By how much the way that surfaces slide [m], and load times slip [J], vary from run to run as far as parts of this
+  /// one tell, with so many contacts in it.
+  struct SumNoise {
+    double sliding, work;
+  };
+  [[gnu::cold]] SumNoise sum_noise(int joint, double contacts) const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {
-    archive(self.seen_, self.time_, self.duration_, self.joints_);
+    archive(self.seen_, self.time_, self.duration_, self.joints_, self.sum_noise_);
   }
 
  private:
@@ -109,6 +116,7 @@ class ClearanceStatistics {
   double time_ = 0.0, duration_ = 0.0;
   std::vector<int> index_;  // by joint: into joints_, or -1
   std::vector<OfJoint> joints_;
+  MeanNoise sum_noise_;  // of the way and of load times slip, by joint
 };
 
 }  // namespace freeplay

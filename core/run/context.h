@@ -34,7 +34,7 @@ inline constexpr unsigned all_terms = terms_of_equations | term_coordinate;
 std::string integrator_words(const Model& model);
 
 struct RunContext {
-  RunContext(std::shared_ptr<const RunEquations> all_equations, const Channels& all_channels);
+  [[gnu::cold]] RunContext(std::shared_ptr<const RunEquations> all_equations, const Channels& all_channels);
 
   /// What outlives a step: `between` may keep memory of the integrator, and evaluations hold what the next ones compare
   /// themselves with.

@@ -29,7 +29,7 @@ class FigureNoise {
     double joints = 0.0, contacts = 0.0, flight = 0.0;
   };
   Loose beside(std::size_t place) const;
-  double of_rms(const Statistics::Mean& wanted) const;
+  [[gnu::cold]] double of_rms(const Statistics::Mean& wanted) const;
 
   const Statistics& statistics_;
 };

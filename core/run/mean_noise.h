@@ -11,7 +11,7 @@ namespace freeplay {
 /// drive makes alike. Of all distances in time that one counts whose parts differ least, so that what comes again with
 /// the drive, or changes slowly, is no chance; parts are as long as an impact is to be expected in each of them, at
 /// least, and longer ones count where their spread says more, as chance that lasts makes it.
-double noise_of_mean(std::span<const double> parts, double events);
+[[gnu::cold]] double noise_of_mean(std::span<const double> parts, double events);
 
 /// Notes sums over time at 64 instants, a comparison for each step.
 class MeanNoise {
@@ -25,7 +25,7 @@ class MeanNoise {
   /// Room for them, in order.
   std::span<double> note(double t);
   /// By how much sum `i` varies when it is `last` at the time t, with so many impacts until then.
-  double of(std::size_t i, double t, double last, double events) const;
+  [[gnu::cold]] double of(std::size_t i, double t, double last, double events) const;
 
   template <class Self, class Archive>
   static void exchange(Self& self, Archive& archive) {

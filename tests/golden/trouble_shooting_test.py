@@ -250,7 +250,7 @@ CASES = {
         (0, driven("drivers:", "  pin: {type: revolute, between: [rod/tip, bar]}\n  hand: {type: revolute, between: [bar/tip, sled]}\n"
                                "  guide: {type: prismatic, between: [rod, sled]}\ndrivers:")
          .replace("joints:", "  bar: {mass: 1 kg, inertia: 0.1, frames: {tip: [0.5, 0]}, pose: {angle: 2}}\n  sled: {mass: 1 kg, inertia: 0.1}\njoints:"), RUN),
-    "body '...' cannot move, though the mechanism can: ...; check at which frames they stand [locked]":
+    "body '...' cannot move, though the mechanism can: ...; check at which frames they stand, and their axes [locked]":
         (0, driven("drivers:", "  foot: {type: revolute, between: [ground, stay]}\n  head: {type: revolute, between: [stay/tip, ground/far]}\ndrivers:")
          .replace("joints:", "  stay: {mass: 1 kg, inertia: 0.1, frames: {tip: [0.5, 0]}, pose: {angle: 40 deg}}\nframes: {ground/far: [0.5, 0]}\njoints:"), RUN),
     "'...' does nothing: none of its numbers that make a force is given; ...":

@@ -284,11 +284,11 @@ OPEN += [
     (SHAPER, "rail: [0, 300 mm]", "rail: [0, 700 mm]", "joints 'pivot', 'swing', 'wrist' and 'rail' contradict each other (bodies 'rocker', 'link' and 'ram')"),
     (SHAPER, "\ndrivers:", "\n  rest: {type: prismatic, between: [ground/lever, ram]}\ndrivers:", "joints 'rail' and 'rest' contradict each other (body 'ram')"),
     (SHAPER, "coupler/end, rocker/pin]", "coupler/end, rocker]",
-     "joints 'main', 'crankpin', 'knee' and 'pivot' and driver 'motor' contradict each other (bodies 'crank', 'coupler' and 'rocker')"),
+     "joints 'main', 'crankpin', 'knee' and 'pivot' and the start value of 'main' contradict each other (bodies 'crank', 'coupler' and 'rocker')"),
     (SHAPER, "joints: {main: 0}", "joints: {pivot: 270 deg}", "and the start value of 'pivot' contradict each other"),
     (FLYWHEEL, "joints: {axle:", "frames: {ground/askew: {position: [0, 2], angle: 120 deg}}\njoints: {slide: {type: prismatic, between: [ground/askew, box]}, axle:",
      "stays open by 1 m and 120 deg with all others closed; joints 'slide' and 'bolts' contradict each other"),
-    (SPUN, "[ground, slide]", "[ground, rod]", "joints 'main', 'big' and 'bore' and driver 'motor' contradict each other (bodies 'crank' and 'rod')"),
+    (SPUN, "[ground, slide]", "[ground, rod]", "joints 'main', 'big' and 'bore' and the start value of 'main' contradict each other (bodies 'crank' and 'rod')"),
 ]
 
 # A head that a loose parallel rod keeps upright.
