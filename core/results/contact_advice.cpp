@@ -29,9 +29,9 @@ double ContactAdvice::fewest_steps_of_hard() const {
   double fewest = std::numeric_limits<double>::infinity();
   for (const OfJoint& joint : joints_) {
     for (const ByDecade* impacts : {&joint.all, &joint.counted}) {
-      const auto hardest =
-          std::find_if(impacts->rbegin(), impacts->rend(), [](double steps) { return std::isfinite(steps); });
-      if (hardest != impacts->rend()) fewest = std::fmin(fewest, *hardest);
+      const auto none = impacts->rend() - 1;  // the smallest are roundings
+      const auto hardest = std::find_if(impacts->rbegin(), none, [](double steps) { return std::isfinite(steps); });
+      if (hardest != none) fewest = std::fmin(fewest, *hardest);
     }
   }
   return fewest;

@@ -46,7 +46,7 @@ class ContactAdvice : public Sink {
   struct Fields {
     int duration = -1, steps = -1, force = -1, speed = -1;
   };
-  static constexpr int decades = 24;             // of forces, from 1e-9 N on
+  static constexpr int decades = 24;             // of forces, the first of all below 1e-8 N
   using ByDecade = std::array<double, decades>;  // fewest steps, by the power of ten of an impact's largest force
   struct OfJoint {
     OfJoint() {

@@ -10,11 +10,13 @@
 namespace freeplay {
 namespace {
 
+constexpr double rounding = 1e-9;  // [N]
+
 /// With what `discard` leaves out.
 bool ever_pressed(const RunRecord& record, int j) {
   const LargestValues& largest = record.statistics.largest();
   const std::size_t force = largest.places().normal_force(j);
-  return record.statistics.joint(j).max_normal_force > 0.0 || largest.before()[force] > 0.0;
+  return record.statistics.joint(j).max_normal_force > rounding || largest.before()[force] > rounding;
 }
 
 }  // namespace

@@ -386,6 +386,8 @@ class WrongPart(ProgramTest):
     def test_a_follower_that_never_touches_is_in_the_verdict(self):
         self.assertEqual([], self.verdict(THROWN % "0.4 s"))
         self.assertEqual([("never-touches", "joint 'c'")], self.verdict(THROWN % "0.2 s"))
+        # A touch of a rounding is none.
+        self.assertEqual([("never-touches", "joint 'c'")], self.verdict((THROWN % "0.2 s").replace("-9.81", "0").replace("guide: 1}", "guide: -1e-15}")))
 
     def noise_and_peak(self, accuracy):
         self.freeplay("run", self.write("m.yaml", ROBOT % accuracy), "--out", "r", "--force")
