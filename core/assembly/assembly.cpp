@@ -12,6 +12,7 @@
 #include "assembly/bare_start.h"
 #include "assembly/closed_mechanism.h"
 #include "assembly/dead_point.h"
+#include "assembly/even_spread.h"
 #include "assembly/failure.h"
 #include "assembly/force_turns.h"
 #include "assembly/gear_turn_choice.h"
@@ -207,13 +208,7 @@ class Assembler {
   bool converge_from_turned(const std::vector<double>& guess) {
     for (const double turn : {0.1, 0.5, 1.5}) {
       std::ranges::copy(guess, state_.q().begin());
-      std::vector<double> increment(state_.v().size(), 0.0);
-      for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-        if (!closed_.coordinates().is_turn(i)) continue;
-        const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
-        increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
-      }
-      closed_.coordinates().retract(guess, increment, state_.q());
+      closed_.coordinates().retract(guess, spread_turns(closed_, turn), state_.q());
       if (mechanism_.holds(mechanism_.converge())) return true;
     }
     return false;

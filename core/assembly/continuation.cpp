@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "assembly/even_spread.h"
 #include "base/index.h"
 
 namespace freeplay {
@@ -47,13 +48,7 @@ bool leave_dead_point(ClosedMechanism& mechanism, double sign) {
   const double start = lead.value, unit = turns ? 1.0 : mechanism.system.size();
   for (const double part : {1.0, 0.1, 0.01}) {
     for (const double turn : {0.0, 0.1, -0.1, 0.3, -0.3}) {
-      std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
-      for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-        if (!mechanism.system.coordinates().is_turn(i)) continue;
-        const double share = static_cast<double>(++turned) * 0.6180339887498949;
-        increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
-      }
-      mechanism.system.coordinates().retract(q, increment, mechanism.state.q());
+      mechanism.system.coordinates().retract(q, spread_turns(mechanism.system, turn), mechanism.state.q());
       lead.value = start + sign * part * first_drive_step * unit;
       if (mechanism.holds(mechanism.converge()) &&
           largest_move(mechanism.system, q, mechanism.state.q()) <= longest_move) {

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "assembly/even_spread.h"
 #include "assembly/loop_gap.h"
 #include "assembly/loop_sides.h"
 #include "base/disjoint_sets.h"
@@ -129,14 +130,8 @@ class Fulfilment {
   std::vector<double> turned(int start) const {
     if (start == 0) return near_;
     constexpr double turns[] = {0.3, 1.0, std::numbers::pi};
-    std::vector<double> increment(at(system_.layout().nv()), 0.0), q = near_;
-    for (int i = 0, count = 0; i < static_cast<int>(increment.size()); ++i) {
-      if (!system_.coordinates().is_turn(i)) continue;
-      // Multiples of two irrational numbers: spread evenly over bodies and starts.
-      const double share = ++count * 0.6180339887498949 + (start - 1) * 0.7548776662466927;
-      increment[at(i)] = turns[start % 3] * (2.0 * (share - std::floor(share)) - 1.0);
-    }
-    system_.coordinates().retract(near_, increment, q);
+    std::vector<double> q = near_;
+    system_.coordinates().retract(near_, spread_turns(system_, turns[start % 3], start - 1), q);
     return q;
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "assembly/even_spread.h"
 #include "base/index.h"
 #include "linear/stacked_rows.h"
 
@@ -121,13 +122,7 @@ std::optional<LoopGap> loop_gap(ClosedMechanism& mechanism) {
   std::optional<LoopGap> gap;
   // Links in line may stand folded where they should be stretched: the smallest of several ways to open.
   for (const double turn : {0.0, 0.2, 0.7, 1.5}) {
-    std::vector<double> increment(at(mechanism.system.layout().nv()), 0.0);
-    for (int i = 0, turned = 0; i < static_cast<int>(increment.size()); ++i) {
-      if (!mechanism.system.coordinates().is_turn(i)) continue;
-      const double share = static_cast<double>(++turned) * 0.6180339887498949;  // golden ratio: spread evenly
-      increment[at(i)] = turn * (2.0 * (share - std::floor(share)) - 1.0);
-    }
-    mechanism.system.coordinates().retract(q, increment, mechanism.state.q());
+    mechanism.system.coordinates().retract(q, spread_turns(mechanism.system, turn), mechanism.state.q());
     std::ranges::copy(h, mechanism.state.h().begin());
     opening.settle(-1);
     const int joint = opening.worst_joint();

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "assembly/even_spread.h"
 #include "base/angle.h"
 #include "base/index.h"
 #include "linear/row_solutions.h"
@@ -224,9 +225,7 @@ std::vector<double> StartBranches::turned(int seed) const {
     if (!system_.coordinates().is_turn(i)) continue;
     const Body& body = mechanism_.model().bodies[at(i / width)];
     const bool given = body.angle || body.rotation;
-    // Golden ratio and its square: spread evenly.
-    const double share = ++count * 0.6180339887498949 + seed * 0.7548776662466927;
-    increment[i] = (given ? 0.3 : std::numbers::pi) * (2.0 * (share - std::floor(share)) - 1.0);
+    increment[i] = (given ? 0.3 : std::numbers::pi) * even_spread(++count, seed);
   }
   std::vector<double> q = guess_;
   system_.coordinates().retract(guess_, {increment.data(), static_cast<std::size_t>(increment.size())}, q);

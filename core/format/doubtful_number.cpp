@@ -280,7 +280,7 @@ bool doubt_direction(const CheckedValue& written, double radians) {
 
 void doubt_angular_speed(const CheckedValue& written, double speed) {
   if (names_a_unit(written)) return;
-  const bool quarters = std::abs(speed) > 91.0 && std::abs(std::remainder(speed, 90.0)) < 1e-9;
+  const bool quarters = std::abs(speed) > 179.0 && std::abs(std::remainder(speed, 90.0)) < 1e-9;
   if (std::abs(speed) < bare_limit::angular_speed) {
     if (!quarters) return;
     written.warn("doubtful-speed", fmt::format("'{0}' comes to {1:.6g} rad/s, that is {2:.0f} rpm: write '{1:.6g} "
