@@ -9,6 +9,7 @@
 namespace freeplay {
 namespace {
 
+const std::string ground_name = "ground";
 constexpr std::size_t most_comparisons = 1'000'000'000;  // characters
 
 bool is_dotted(const std::string& name) { return name.find('.') != std::string::npos; }
@@ -76,7 +77,6 @@ void Draft::unknown(const CheckedValue& value, const char* kind, const std::stri
 }
 
 const std::string& Draft::body_name(BodyId id) const {
-  static const std::string ground_name = "ground";
   return id == ground ? ground_name : model.bodies[static_cast<std::size_t>(id)].name;
 }
 

@@ -17,14 +17,15 @@
 namespace freeplay {
 namespace {
 
+struct Units {
+  static inline std::set<std::string>& texts =
+      *new std::set<std::string>;  // for threads that outlive the program's end
+};
+
 /// The same text for the life of the program: units of columns are views.
 const char* kept_unit(const std::string& unit) {
-  struct Units {
-    std::set<std::string> texts;
-  };
-  static Units units;
-  const std::lock_guard lock(program_lock<Units>());
-  return units.texts.insert(unit).first->c_str();
+  const std::lock_guard lock(ProgramLock<Units>::get());
+  return Units::texts.insert(unit).first->c_str();
 }
 
 }  // namespace

@@ -23,11 +23,11 @@
 #include "load/input_file.h"
 #include "load/plugins.h"
 #include "python/asked_analysis.h"
+#include "python/before_forks.h"
 #include "python/binding.h"
 #include "python/opened_model.h"
 #include "python/refusal.h"
 #include "python/stored_result.h"
-#include "results/hdf5_forks.h"
 
 namespace freeplay {
 namespace {
@@ -267,7 +267,7 @@ py::object schema_of(const std::string& kind) {
 PYBIND11_MODULE(_core, module) {
   using namespace freeplay;
   py::register_local_exception_translator(&translate);
-  keep_hdf5_whole_at_forks();
+  prepare_for_forks();
   module.attr("version") = program_version;
   module.attr("schema") = schema_version;
   module.attr("plugin_abi") = abi_version;

@@ -75,7 +75,7 @@ class LoopReader {
   }
 
   JointType read_type(const std::string& type, const Spot& spot, const std::string& owner) {
-    static const std::vector<std::string> words = {"revolute", "continuous", "prismatic", "fixed"};
+    const std::vector<std::string> words = {"revolute", "continuous", "prismatic", "fixed"};
     constexpr JointType types[] = {JointType::revolute, JointType::revolute, JointType::prismatic, JointType::fixed};
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (type == words[i]) return types[i];

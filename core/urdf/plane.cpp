@@ -92,10 +92,7 @@ class Projector {
   }
 
  private:
-  const Mount& mount(int link) const {
-    static const Mount world;
-    return link == world_link ? world : out_.mounts[at(link)];
-  }
+  const Mount& mount(int link) const { return link == world_link ? world_ : out_.mounts[at(link)]; }
 
   void place(int link) {
     Mount& here = out_.mounts[at(link)];
@@ -196,6 +193,7 @@ class Projector {
   }
 
   const Robot& robot_;
+  const Mount world_;
   Eigen::Matrix3d axes_;
   PlanarRobot out_;
 };

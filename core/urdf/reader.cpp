@@ -203,8 +203,7 @@ class RobotReader {
   }
 
   void check_type(const std::string& type, const Spot& spot, const std::string& owner) {
-    static const std::vector<std::string> words = {"revolute", "continuous", "prismatic",
-                                                   "fixed",    "floating",   "planar"};
+    const std::vector<std::string> words = {"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
     if (std::ranges::find(words, type) != words.end()) return;
     messages_.error(spot, "bad-urdf", fmt::format("unknown type '{}' of {}", type, owner),
                     messages_.suggest(type, words), "types: revolute, continuous, prismatic, fixed, floating, planar");
@@ -402,7 +401,7 @@ class RobotReader {
 
   /// Unknown parts of the robot: those that are known to others are counted only.
   void finish_known() {
-    static const std::vector<std::string> words = {"link", "joint", "loop", "loop_joint", "constraint"};
+    const std::vector<std::string> words = {"link", "joint", "loop", "loop_joint", "constraint"};
     for (const XmlAttribute* at = root_.FirstAttribute(); at != nullptr; at = at->Next()) {
       const std::string_view name = at->Name();
       if (name == "name" || name == "version" || name.starts_with("xmlns")) continue;

@@ -69,10 +69,7 @@ class SpatialView final : public View {
     return type == JointType::prismatic ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
   }
 
-  const Mount& mount(int link) const {
-    static const Mount world;
-    return link < 0 ? world : robot_.mounts[at(link)];
-  }
+  const Mount& mount(int link) const { return link < 0 ? world_ : robot_.mounts[at(link)]; }
   /// At coordinates zero, in the root frame, of the body that carries the link.
   Eigen::Isometry3d body_pose(int link) const {
     const int body = mount(link).body;
@@ -119,6 +116,7 @@ class SpatialView final : public View {
   }
 
   const Robot& robot_;
+  const Mount world_;
   Nodes& nodes_;
   std::vector<MassProperties> bodies_;
   std::vector<Eigen::Isometry3d> poses_;  ///< of each link's frame at coordinates zero, in the root frame

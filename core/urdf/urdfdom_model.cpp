@@ -135,7 +135,7 @@ struct Answer {
 };
 
 Answer ask(RobotText& robot) {
-  const std::lock_guard lock(program_lock<Listener>());  // who listens to urdfdom is the program's
+  const std::lock_guard lock(ProgramLock<Listener>::get());  // who listens to urdfdom is the program's
   Listener listener;
   std::string why = "no reason given";
   try {

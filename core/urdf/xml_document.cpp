@@ -228,10 +228,11 @@ XmlElement* next_of(XmlElement* element) {
   return nullptr;
 }
 
+const XmlPlaces beginning = {{1, 1}, {1, 1}, {1, 1}, {}};
+
 }  // namespace
 
 const XmlPlaces& places_of(const XmlElement& element) {
-  static const XmlPlaces beginning = {{1, 1}, {1, 1}, {1, 1}, {}};
   const auto* places = static_cast<const XmlPlaces*>(element.GetUserData());
   return places == nullptr ? beginning : *places;
 }
