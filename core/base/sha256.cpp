@@ -1,38 +1,45 @@
 #include "base/sha256.h"
 
 #include <array>
+#include <cstdint>
 #include <cstring>
 #include <fstream>
 
-#include <sha2.h>
+#include <nettle/sha2.h>
 
 namespace freeplay {
 
 std::string sha256(std::string_view text) {
-  char hex[SHA256_DIGEST_STRING_LENGTH];
-  SHA256Data(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), hex);
-  return hex;
+  Sha256 hash;
+  hash.add(text.data(), text.size());
+  return hash.digits();
 }
 
 Sha256::Sha256() {
-  static_assert(sizeof(SHA2_CTX) == sizeof state_);
-  SHA2_CTX context;
-  SHA256Init(&context);
+  static_assert(sizeof(sha256_ctx) == sizeof state_);
+  sha256_ctx context;
+  sha256_init(&context);
   std::memcpy(state_.data(), &context, sizeof context);
 }
 
 void Sha256::add(const void* bytes, std::size_t count) {
-  SHA2_CTX context;
+  sha256_ctx context;
   std::memcpy(&context, state_.data(), sizeof context);
-  SHA256Update(&context, static_cast<const std::uint8_t*>(bytes), count);
+  sha256_update(&context, count, static_cast<const std::uint8_t*>(bytes));
   std::memcpy(state_.data(), &context, sizeof context);
 }
 
 std::string Sha256::digits() const {
-  SHA2_CTX context;
+  sha256_ctx context;
   std::memcpy(&context, state_.data(), sizeof context);
-  char hex[SHA256_DIGEST_STRING_LENGTH];
-  return SHA256End(&context, hex);
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> bytes{};
+  sha256_digest(&context, bytes.size(), bytes.data());
+  std::string digits;
+  for (const std::uint8_t byte : bytes) {
+    digits += "0123456789abcdef"[byte >> 4];
+    digits += "0123456789abcdef"[byte & 15];
+  }
+  return digits;
 }
 
 std::string sha256_of_file(const std::string& path) {

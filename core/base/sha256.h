@@ -23,7 +23,7 @@ class Sha256 {
   std::string digits() const;
 
  private:
-  std::array<std::uint64_t, 26> state_{};  // that of the library, as plain words
+  std::array<std::uint64_t, 14> state_{};  // that of the library, as plain words
 };
 
 }  // namespace freeplay

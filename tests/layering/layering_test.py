@@ -67,7 +67,7 @@ LIBRARIES = {
     "console_bridge": {"urdf"},
     "klu.h": {"linear"},
     "SuiteSparseQR.hpp": {"linear"},
-    "sha2.h": {"base"},
+    "nettle": {"base"},
     "hdf5.h": {"results"},
     "matio.h": {"results"},
     "zlib.h": {"study"},

@@ -14,7 +14,7 @@ install(DIRECTORY mechanisms DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/freeplay/e
 # Archives are linked into the program and the extension: their terms go with them.
 file(READ LICENSE terms)
 foreach(package libsuitesparse-dev liblapack-dev libblas-dev libsundials-dev libhdf5-dev libmatio-dev libsz2 zlib1g-dev libyaml-cpp-dev libtinyxml2-dev
-                libexpat1-dev libmd-dev libjs-dygraphs musl-dev libcli11-dev nlohmann-json3-dev libeigen3-dev libboost-dev pybind11-dev)
+                libexpat1-dev nettle-dev libjs-dygraphs musl-dev libcli11-dev nlohmann-json3-dev libeigen3-dev libboost-dev pybind11-dev)
   set(source /usr/share/doc/${package}/copyright)
   string(APPEND terms "\n\n---- Of ${package}, parts of which are linked in ----\n\n")
   if(EXISTS ${source})
