@@ -50,16 +50,23 @@ class Groups {
 
 }  // namespace
 
-std::vector<char> reached_by_drivers(const Model& model) {
+std::vector<int> tied_groups(const Model& model) {
   Groups groups(model);
-  std::vector<char> roots(model.bodies.size(), 0), reached(roots.size());
+  std::vector<int> found(model.bodies.size());
+  for (std::size_t b = 0; b < found.size(); ++b) found[b] = groups.root(static_cast<int>(b));
+  return found;
+}
+
+std::vector<char> reached_by_drivers(const Model& model) {
+  const std::vector<int> groups = tied_groups(model);
+  std::vector<char> driven(groups.size(), 0), reached(groups.size());
   for (const Driver& driver : model.drivers) {
     const JointElement& joint = model.joints[at(driver.joint)];
     for (const int marker : {joint.marker_a, joint.marker_b}) {
-      if (const BodyId body = groups.body_of(marker); body != ground) roots[at(groups.root(body))] = 1;
+      if (const BodyId body = model.markers[at(marker)].body; body != ground) driven[at(groups[at(body)])] = 1;
     }
   }
-  for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = roots[at(groups.root(static_cast<int>(b)))];
+  for (std::size_t b = 0; b < reached.size(); ++b) reached[b] = driven[at(groups[b])];
   return reached;
 }
 

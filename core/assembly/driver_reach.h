@@ -7,8 +7,11 @@
 
 namespace freeplay {
 
-/// By body: whether joints, gears, forces between bodies, or formulas that read the motion of one and act on another
-/// tie it to a body of a driven joint, ground left out.
+/// By body: the number of its group. Joints, gears, forces between bodies, and formulas that read the motion of one and
+/// act on another tie bodies to each other, ground left out.
+std::vector<int> tied_groups(const Model& model);
+
+/// By body: whether its group has a body of a driven joint.
 std::vector<char> reached_by_drivers(const Model& model);
 
 }  // namespace freeplay

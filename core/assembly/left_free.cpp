@@ -9,6 +9,7 @@
 
 #include "assembly/driver_reach.h"
 #include "assembly/element_number.h"
+#include "assembly/missed_joint.h"
 #include "assembly/row_space.h"
 #include "base/index.h"
 #include "model/force_element.h"
@@ -19,8 +20,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-constexpr double hangs_below = 0.5;    // cosine from the plumb line
-constexpr double closes_within = 0.1;  // by the size of the model: given poses are guesses
+constexpr double hangs_below = 0.5;  // cosine from the plumb line
 
 class FreeMotions {
  public:
@@ -42,20 +42,20 @@ class FreeMotions {
   void judge(const MatrixXd& held, LeftFree& found) const {
     const auto is_moving = [&](BodyId body) { return std::ranges::count(found.bodies, body) > 0; };
     const bool acts = acts_on(is_moving);
-    const std::vector<int> unrestrained = acts ? without_start(is_moving, held) : found.bodies;
+    MissedJoint missed = missed_joint(closed_, shut_, is_moving);
+    spread(missed.bodies);
+    const std::vector<int> unrestrained = acts ? without_start(is_moving, held, missed.bodies) : found.bodies;
     if (unrestrained.empty()) return;
-    std::string names;
-    for (const int b : unrestrained)
-      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", model_.bodies[at(b)].name);
-    if (unrestrained.size() > 5)
-      names = fmt::format("'{}' and {} others", model_.bodies[at(unrestrained[0])].name, unrestrained.size() - 1);
     found.doubtful = unrestrained.front();
     found.doubt = fmt::format(
         "{} left over with all drivers at rest, and {} {}: add the missing {}guide, joint or driver; what is "
         "meant to move freely gets a start {}",
         found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
-        acts ? "no start is given for" : "nothing acts on", names, acts ? "" : "gravity, force, ",
-        acts ? "under 'initial', or a 'pose' with its angle" : "speed under 'initial', if only 0");
+        acts ? "no start is given for" : "nothing acts on", names_of(unrestrained), acts ? "" : "gravity, force, ",
+        !acts ? "speed under 'initial', if only 0"
+        : missed.frame.empty()
+            ? "under 'initial', or a 'pose' with its angle"
+            : fmt::format("under 'initial' (a 'pose' counts as a guess while nothing stands on {})", missed.frame));
   }
 
   /// A wheel on its own bearing on ground that nothing turns, as one whose gear was forgotten.
@@ -80,10 +80,23 @@ class FreeMotions {
     }
     const auto apart = std::ranges::find_if(found.bodies, [&](BodyId body) { return !reached[at(body)]; });
     if (apart == found.bodies.end()) return;
-    found.doubtful = *apart;
+    const std::vector<int> groups = tied_groups(model_);
+    std::vector<int> bodies;
+    for (int b = 0; b < static_cast<int>(groups.size()); ++b) {
+      if (groups[at(b)] == groups[at(*apart)]) bodies.push_back(b);
+    }
+    found.doubtful = bodies.front();
     found.doubt = fmt::format(
-        "no driver moves '{}': no joint, gear or force ties it to what drivers move; add what is missing, or a driver",
-        model_.bodies[at(*apart)].name);
+        "no driver moves {}: no joint, gear or force ties {} to what drivers move; add what is missing, or a driver",
+        names_of(bodies), bodies.size() == 1 ? "it" : "any");
+  }
+
+  std::string names_of(const std::vector<int>& bodies) const {
+    const auto name = [&](int body) { return fmt::format("'{}'", model_.bodies[at(body)].name); };
+    if (bodies.size() > 5) return fmt::format("{} and {} others", name(bodies.front()), bodies.size() - 1);
+    std::string names;
+    for (const int body : bodies) names += (names.empty() ? "" : ", ") + name(body);
+    return names;
   }
 
   /// Whether all joints and forces between bodies are to ground, and no other force acts on it.
@@ -302,9 +315,10 @@ class FreeMotions {
   /// freedoms where no driver moves what joints tie together, and the pose of a body. As poses are also guesses for
   /// loops, a position without an angle of a body on a pin is none, and that of a body which turns about its own centre
   /// of mass unnoticed is its own alone: what holds a slider without its guide is no start. Nor is any pose of bodies
-  /// that may_miss_a_joint().
+  /// that miss a joint.
   template <class IsMoving>
-  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held) const {
+  std::vector<int> without_start(const IsMoving& is_moving, const MatrixXd& held,
+                                 const std::vector<char>& miss_a_joint) const {
     std::vector<char> jointed(model_.bodies.size(), 0);
     MatrixXd given = held;
     for (int j = 0; j < static_cast<int>(model_.joints.size()); ++j) {
@@ -338,10 +352,9 @@ class FreeMotions {
     const std::vector<int> candidates = moving_in(given, idle);
     const int width = closed_.layout().body_velocities();
     const auto turns_unnoticed = [&](int b) { return idle.middleRows(width * b, width).squaredNorm(); };
-    const std::vector<char> guesses = may_miss_a_joint(is_moving);
     const auto posed = [&](int b) {
       const Body& body = model_.bodies[at(b)];
-      return !guesses[at(b)] && (body.angle || body.rotation || (body.position && !jointed[at(b)]));
+      return !miss_a_joint[at(b)] && (body.angle || body.rotation || (body.position && !jointed[at(b)]));
     };
     const double all_turns = (model_.space == Space::planar ? 1.0 : 3.0) - counts_as_motion;
     for (const int b : candidates) {
@@ -354,83 +367,6 @@ class FreeMotions {
       if (std::ranges::count(moving, b) > 0 || turns_unnoticed(b) > counts_as_motion) unrestrained.push_back(b);
     }
     return unrestrained;
-  }
-
-  /// Bodies that are joined to one of a pair, of which one moves, that no joint holds together though a frame which
-  /// nothing uses stands on one of them about where a frame of the other does: there a loop was to close.
-  template <class IsMoving>
-  std::vector<char> may_miss_a_joint(const IsMoving& is_moving) const {
-    std::vector<char> found(model_.bodies.size(), 0);
-    const auto moves = [&](BodyId body) { return body != ground && is_moving(body); };
-    if (std::ranges::any_of(model_.frames, [&](const Marker& one) { return !moves(one.body) && is_left_over(one); }))
-      std::ranges::fill(found, 1);
-    for (const Marker& frame : model_.frames) {
-      if (is_used(frame) || !marks_a_joint(frame)) continue;
-      const Eigen::Vector3d place = place_of(frame);
-      for (const Marker& other : model_.frames) {
-        if (frame.body == other.body || !(moves(frame.body) || moves(other.body)) || other.name.ends_with("/com"))
-          continue;
-        if ((place_of(other) - place).norm() > closes_within * closed_.size() || are_joined(frame.body, other.body))
-          continue;
-        for (const BodyId body : {frame.body, other.body}) {
-          if (body != ground) found[at(body)] = 1;
-        }
-      }
-    }
-    spread(found);
-    return found;
-  }
-
-  /// Frames that the file names do, and origins that it puts elsewhere than at the centre of mass.
-  bool marks_a_joint(const Marker& frame) const {
-    if (!frame.name.ends_with("/origin")) return !frame.name.ends_with("/com");
-    if (frame.body == ground) return false;
-    const Body& body = model_.bodies[at(frame.body)];
-    return (body.position || body.angle || body.rotation) && body.com != Vector3{};
-  }
-
-  /// A frame of the model file that nothing at all stands on.
-  bool is_left_over(const Marker& frame) const {
-    if (frame.name.ends_with("/origin") || frame.name.ends_with("/com")) return false;
-    if (frame.body != ground && model_.bodies[at(frame.body)].location.file != model_.file) return false;
-    return std::ranges::none_of(model_.markers, [&](const Marker& used) { return used.name == frame.name; });
-  }
-  /// By more than forces along or about an axis, as of friction: these act at joints, and hold nothing.
-  bool is_used(const Marker& frame) const {
-    for (int m = 0; m < static_cast<int>(model_.markers.size()); ++m) {
-      if (model_.markers[at(m)].name == frame.name && !serves_axes_alone(m)) return true;
-    }
-    return false;
-  }
-  bool serves_axes_alone(int marker) const {
-    bool any = false;
-    for (const JointElement& joint : model_.joints) {
-      if (joint.gear >= 0 || (joint.marker_a != marker && joint.marker_b != marker)) continue;
-      if (!acts_on_an_axis(joint)) return false;
-      any = true;
-    }
-    const auto at_marker = [&](const AppliedForce& force) { return force.marker == marker; };
-    return any && std::ranges::none_of(model_.forces, at_marker) &&
-           std::ranges::count(model_.settings.frames, marker) == 0;
-  }
-  static bool acts_on_an_axis(const JointElement& joint) {
-    return is_force_element(joint) && joint.ideal_layout().coordinate != Coordinate::none;
-  }
-
-  bool are_joined(BodyId one, BodyId other) const {
-    return std::ranges::any_of(model_.joints, [&](const JointElement& joint) {
-      const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
-      return joint.gear < 0 && !acts_on_an_axis(joint) && ((a == one && b == other) || (a == other && b == one));
-    });
-  }
-
-  /// At the start.
-  Eigen::Vector3d place_of(const Marker& frame) const {
-    const Eigen::Vector3d in_body(frame.position.data());
-    if (frame.body == ground) return in_body;
-    const Pose pose = closed_.coordinates().frame_pose(frame.body, shut_.q);
-    return Eigen::Vector3d(pose.position) +
-           Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(pose.rotation) * in_body;
   }
 
   const Model& model_;

@@ -99,10 +99,11 @@ class MissingPart(ProgramTest):
         model = self.without(FOUR_BAR % "coupler/tip, rocker/tip", "D")
         self.assert_doubted(model, "unused", "frame 'ground/D' is not used")
         self.assert_doubted(model, "left-free", "no start is given for 'coupler', 'rocker'")
+        self.assert_doubted(model, "left-free", "(a 'pose' counts as a guess while nothing stands on frame 'ground/D')")
 
     def test_what_no_gear_ties_to_a_driver_is_named(self):
         self.assert_doubted(self.without(WINCH, "wind"), "left-free", "no driver moves 'hook'")
-        self.assert_doubted(self.without(WINCH, "box"), "left-free", "no driver moves 'drum'")
+        self.assert_doubted(self.without(WINCH, "box"), "left-free", "no driver moves 'drum', 'hook': no joint, gear or force ties any to")
 
     def test_a_formula_ties_what_it_acts_on_to_what_it_reads(self):
         pulled = self.without(WINCH, "wind").replace("-2 N*s/m*body.hook.vy", "100 N*s*body.drum.omega")
