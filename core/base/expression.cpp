@@ -211,6 +211,22 @@ bool Expression::run(double t, std::span<const double> variables, Jet& out, Eval
         --top;
         top[-1] = quick;
         continue;
+      case Operation::subtract:
+        quick = top[-2] - top[-1];
+        if (!quick.is_finite()) break;
+        --top;
+        top[-1] = quick;
+        continue;
+      case Operation::sine:
+        quick = sin(top[-1]);
+        if (!quick.is_finite()) break;
+        top[-1] = quick;
+        continue;
+      case Operation::cosine:
+        quick = cos(top[-1]);
+        if (!quick.is_finite()) break;
+        top[-1] = quick;
+        continue;
       case Operation::divide:
         if (top[-1].value == 0.0) break;
         quick = top[-2] / top[-1];

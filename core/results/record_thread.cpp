@@ -32,7 +32,9 @@ void RecordThread::add_row(std::span<const double> values, std::span<const std::
   std::unique_lock lock(mutex_);
   if (gone_) return;
   std::vector<double>& rows = waiting_.numbers.rows;
-  for (const std::size_t index : picked) rows.push_back(values[index]);
+  rows.resize(rows.size() + picked.size());
+  double* to = rows.data() + rows.size() - picked.size();
+  for (const std::size_t index : picked) *to++ = values[index];
   if (rows.size() < worth_waking) return;
   changed_.notify_all();
   changed_.wait(lock, [&] { return gone_ || rows.size() < std::max(too_many, 2 * width_); });
