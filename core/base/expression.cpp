@@ -179,6 +179,42 @@ bool Expression::apply(const Instruction& instruction, Jet* operands, Evaluation
   return false;
 }
 
+// What most formulas are made of, without a call. False for all else, and for what is not finite or has no value, which
+// apply() reports.
+[[gnu::always_inline]] inline bool Expression::apply_quickly(Operation operation, Jet*& top) noexcept {
+  Jet result;
+  int fewer = 1;
+  switch (operation) {
+    case Operation::add:
+      result = top[-2] + top[-1];
+      break;
+    case Operation::subtract:
+      result = top[-2] - top[-1];
+      break;
+    case Operation::multiply:
+      result = top[-2] * top[-1];
+      break;
+    case Operation::divide:
+      if (top[-1].value == 0.0) return false;
+      result = top[-2] / top[-1];
+      break;
+    case Operation::sine:
+      result = sin(top[-1]);
+      fewer = 0;
+      break;
+    case Operation::cosine:
+      result = cos(top[-1]);
+      fewer = 0;
+      break;
+    default:
+      return false;
+  }
+  if (!result.is_finite()) return false;
+  top -= fewer;
+  top[-1] = result;
+  return true;
+}
+
 template <int depth>
 bool Expression::run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept {
   // Operands are written before they are read: to zero all takes longer than most formulas.
@@ -186,8 +222,6 @@ bool Expression::run(double t, std::span<const double> variables, Jet& out, Eval
   Jet* const stack = new (room) Jet;
   Jet* top = stack;  // one past the last operand
   for (const Instruction& instruction : program_) {
-    // What most formulas are made of, without a call; what is not finite, or has no value, is reported below.
-    Jet quick;
     switch (instruction.operation) {
       case Operation::push_time:
         *top++ = Jet::time(t);
@@ -199,43 +233,8 @@ bool Expression::run(double t, std::span<const double> variables, Jet& out, Eval
         if (!std::isfinite(instruction.constant)) break;
         *top++ = Jet::constant(instruction.constant);
         continue;
-      case Operation::add:
-        quick = top[-2] + top[-1];
-        if (!quick.is_finite()) break;
-        --top;
-        top[-1] = quick;
-        continue;
-      case Operation::multiply:
-        quick = top[-2] * top[-1];
-        if (!quick.is_finite()) break;
-        --top;
-        top[-1] = quick;
-        continue;
-      case Operation::subtract:
-        quick = top[-2] - top[-1];
-        if (!quick.is_finite()) break;
-        --top;
-        top[-1] = quick;
-        continue;
-      case Operation::sine:
-        quick = sin(top[-1]);
-        if (!quick.is_finite()) break;
-        top[-1] = quick;
-        continue;
-      case Operation::cosine:
-        quick = cos(top[-1]);
-        if (!quick.is_finite()) break;
-        top[-1] = quick;
-        continue;
-      case Operation::divide:
-        if (top[-1].value == 0.0) break;
-        quick = top[-2] / top[-1];
-        if (!quick.is_finite()) break;
-        --top;
-        top[-1] = quick;
-        continue;
       default:
-        break;
+        if (apply_quickly(instruction.operation, top)) continue;
     }
     Jet* const operands = top - operand_count(instruction.operation);
     if (!chooses_) {

@@ -196,6 +196,7 @@ class Expression {
 
   template <int depth>
   bool run(double t, std::span<const double> variables, Jet& out, EvaluationFailure& failure) const noexcept;
+  static bool apply_quickly(Operation operation, Jet*& top) noexcept;
   static const char* apply_function(const Instruction& instruction, Jet* operands) noexcept;
   bool apply(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
   bool apply_or_lack(const Instruction& instruction, Jet* operands, EvaluationFailure& failure) const noexcept;
