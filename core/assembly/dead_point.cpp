@@ -137,11 +137,12 @@ std::string words(const DeadStart& start, const Model& model) {
 
 std::string joint_names(std::span<const int> joints, const Model& model) {
   constexpr std::size_t most = 6;
+  const std::size_t named = joints.size() > most + 1 ? most : joints.size();  // not "and 1 others"
   std::string text;
-  for (std::size_t i = 0; i < std::min(joints.size(), most); ++i) {
-    text += fmt::format("{}'{}'", text.empty() ? "" : ", ", model.joints[at(joints[i])].name);
+  for (const int joint : joints.first(named)) {
+    text += fmt::format("{}'{}'", text.empty() ? "" : ", ", model.joints[at(joint)].name);
   }
-  if (joints.size() > most) text += fmt::format(" and {} others", joints.size() - most);
+  if (joints.size() > named) text += fmt::format(" and {} others", joints.size() - named);
   if (text.empty()) return text;
   return (joints.size() == 1 ? "joint " : "joints ") + text;
 }

@@ -156,7 +156,8 @@ std::string words(const DriveRange& range, Coordinate coordinate) {
   const std::string verb = coordinate == Coordinate::angle ? "turn" : "move";
   if (range.from == -infinite) return fmt::format("{} up to {}", verb, words(range.to, coordinate));
   if (range.to == infinite) return fmt::format("{} down to {}", verb, words(range.from, coordinate));
-  return fmt::format("{} from {} to {}", verb, words(range.from, coordinate), words(range.to, coordinate));
+  const std::string from = words(range.from, coordinate), to = words(range.to, coordinate);
+  return from == to ? fmt::format("hardly {} from {}", verb, from) : fmt::format("{} from {} to {}", verb, from, to);
 }
 
 namespace {
