@@ -124,8 +124,26 @@ class FreeMotions {
     const auto turns = [&](const Gear& gear) { return gear.first == bearing || gear.second == bearing; };
     return bearing >= 0 && std::ranges::none_of(model_.gears, turns) &&
            std::ranges::count(model_.drivers, bearing, &Driver::joint) == 0 &&
-           std::ranges::none_of(model_.forces,
-                                [&](const AppliedForce& force) { return body_of(force.marker) == body; });
+           std::ranges::none_of(model_.forces, [&](const AppliedForce& force) {
+             return body_of(force.marker) == body && !only_brakes(force);
+           });
+  }
+
+  /// Whether it follows from speeds of its own body alone, and is nothing at rest, as a drag.
+  bool only_brakes(const AppliedForce& force) const {
+    const auto is_own_speed = [&](const MotionChannel& channel) {
+      const bool speed = channel.of == MotionChannel::Of::velocity || channel.of == MotionChannel::Of::angular_velocity;
+      return speed && body_of(channel.element) == body_of(force.marker);
+    };
+    const std::vector<double> rest(force.by_motion.channels.size(), 0.0);
+    const auto is_nothing_at_rest = [&](const StateFormula& formula) {
+      double value = 0.0;
+      EvaluationFailure failure;
+      return formula.value({model_.settings.start, rest}, value, failure) && value == 0.0;
+    };
+    return !force.by_motion.empty() && force.in_time.empty() &&
+           std::ranges::all_of(force.by_motion.channels, is_own_speed) &&
+           std::ranges::all_of(force.by_motion.formulas, is_nothing_at_rest);
   }
 
   BodyId body_of(int marker) const { return model_.markers[at(marker)].body; }

@@ -105,6 +105,14 @@ class MissingPart(ProgramTest):
         self.assert_doubted(self.without(WINCH, "wind"), "left-free", "no driver moves 'hook'")
         self.assert_doubted(self.without(WINCH, "box"), "left-free", "no driver moves 'drum', 'hook': no joint, gear or force ties any to")
 
+    def test_a_drag_turns_nothing(self):
+        fan = (WINCH.replace("frames:", "  fan: {mass: 1 kg, inertia: 0.01}\nframes:", 1)
+               .replace("drivers:", "  hub: {type: revolute, between: [ground, fan]}\n  step: {type: gear, of: [motor, hub], ratio: 2}\ndrivers:")
+               .replace("forces: {", "forces: {drag: {type: torque, on: fan, value: \"-1e-3 N*m*s^2*body.fan.omega*abs(body.fan.omega)\"}, "))
+        self.assertEqual([], self.doubts(fan))
+        self.assert_doubted(self.without(fan, "step"), "left-free", "'fan' never moves: it turns in its bearing on ground alone")
+        self.assertEqual([], self.doubts(self.without(fan, "step").replace("-1e-3 N", "1 N*m - 1e-3 N")))
+
     def test_a_formula_ties_what_it_acts_on_to_what_it_reads(self):
         pulled = self.without(WINCH, "wind").replace("-2 N*s/m*body.hook.vy", "100 N*s*body.drum.omega")
         self.assertEqual([], self.doubts(pulled))
