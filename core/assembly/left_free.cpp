@@ -117,6 +117,7 @@ class FreeMotions {
       const JointElement& joint = model_.joints[at(j)];
       const BodyId a = body_of(joint.marker_a), b = body_of(joint.marker_b);
       if (joint.gear >= 0 || (a != body && b != body)) continue;
+      if ((a == ground || b == ground) && only_brakes(joint)) continue;
       if (bearing >= 0 || joint.is_force || joint.has_play || joint.start_speed || (a != ground && b != ground))
         return false;
       bearing = j;
@@ -127,6 +128,13 @@ class FreeMotions {
            std::ranges::none_of(model_.forces, [&](const AppliedForce& force) {
              return body_of(force.marker) == body && !only_brakes(force);
            });
+  }
+
+  /// Whether it acts on an axis by neither a spring nor a preload, as friction and dampers.
+  static bool only_brakes(const JointElement& joint) {
+    const auto has = [&](const char* name) { return std::abs(element_number(joint, name)) > 0.0; };
+    return is_force_element(joint) && joint.ideal_layout().coordinate != Coordinate::none && joint.by_motion.empty() &&
+           !has("stiffness") && !has("preload");
   }
 
   /// Whether it follows from speeds of its own body alone, and is nothing at rest, as a drag.

@@ -112,6 +112,9 @@ class MissingPart(ProgramTest):
         self.assertEqual([], self.doubts(fan))
         self.assert_doubted(self.without(fan, "step"), "left-free", "'fan' never moves: it turns in its bearing on ground alone")
         self.assertEqual([], self.doubts(self.without(fan, "step").replace("-1e-3 N", "1 N*m - 1e-3 N")))
+        rubbed = "forces: {rub: {type: joint-friction, between: [%s, fan], kind: rotational, friction: 0.1 N*m}, "
+        self.assert_doubted(self.without(fan, "step").replace("forces: {", rubbed % "ground"), "left-free", "'fan' never moves")
+        self.assertEqual([], self.doubts(self.without(fan, "step").replace("forces: {", rubbed % "rotor")))  # a clutch
 
     def test_a_formula_ties_what_it_acts_on_to_what_it_reads(self):
         pulled = self.without(WINCH, "wind").replace("-2 N*s/m*body.hook.vy", "100 N*s*body.drum.omega")
