@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <unordered_map>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -12,18 +14,24 @@
 namespace freeplay {
 namespace {
 
-/// By body the names of two joints that hold it at one and the same marker.
+/// By body the names of two joints that hold it at one and the same marker. More of them are meant there, as the
+/// pistons of one swash plate.
 std::unordered_map<BodyId, std::string> shared_holds(const Draft& draft) {
   std::unordered_map<BodyId, std::string> shared;
-  std::unordered_map<int, const JointElement*> first;  // by marker
+  std::unordered_map<int, std::vector<const JointElement*>> holds;  // by marker
   for (const JointElement& joint : draft.model.joints) {
     if (joint.gear >= 0 || is_force_element(joint)) continue;
+    for (const int index : {joint.marker_a, joint.marker_b}) holds[index].push_back(&joint);
+  }
+  for (const JointElement& joint : draft.model.joints) {
     for (const int index : {joint.marker_a, joint.marker_b}) {
       const Marker& marker = draft.model.markers[static_cast<std::size_t>(index)];
-      const auto [known, fresh] = first.emplace(index, &joint);
-      if (fresh || marker.body == ground) continue;
+      const auto found = holds.find(index);
+      if (marker.body == ground || found == holds.end()) continue;
+      const std::vector<const JointElement*>& joints = found->second;
+      if (joints.size() != 2 || joints.back() != &joint) continue;
       shared.emplace(marker.body, fmt::format("; '{}' and '{}' both hold '{}': is one of them meant here?",
-                                              known->second->name, joint.name, marker.name));
+                                              joints.front()->name, joint.name, marker.name));
     }
   }
   return shared;

@@ -105,6 +105,15 @@ class MissingPart(ProgramTest):
         self.assert_doubted(self.without(WINCH, "wind"), "left-free", "no driver moves 'hook'")
         self.assert_doubted(self.without(WINCH, "box"), "left-free", "no driver moves 'drum', 'hook': no joint, gear or force ties any to")
 
+    def test_only_two_joints_at_one_place_may_be_one_too_many_there(self):
+        rods = "".join("  %s: {mass: 1, inertia: 0.01, com: [0.1, 0]}\n" % name for name in "abc")
+        pins = "".join("  p%s: {type: revolute, between: [hub/eye, %s]}\n" % (name, name) for name in "abc")
+        star = ("freeplay: 1\nbodies:\n  hub: {mass: 1, inertia: 0.01, frames: {eye: [0.1, 0], spare: [0.2, 0]}}\n" + rods +
+                "joints:\n  axle: {type: revolute, between: [ground, hub]}\n" + pins + "simulation: {end: 1 s, step: 1 ms}\n")
+        self.assertIn(("unused", "frame 'spare' is not used"), self.doubts(star))
+        two = star.replace("  pc: {type: revolute, between: [hub/eye, c]}", "  pc: {type: revolute, between: [a, c]}")
+        self.assert_doubted(two, "unused", "'pa' and 'pb' both hold 'hub/eye': is one of them meant here?")
+
     def test_a_drag_turns_nothing(self):
         fan = (WINCH.replace("frames:", "  fan: {mass: 1 kg, inertia: 0.01}\nframes:", 1)
                .replace("drivers:", "  hub: {type: revolute, between: [ground, fan]}\n  step: {type: gear, of: [motor, hub], ratio: 2}\ndrivers:")
