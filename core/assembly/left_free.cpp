@@ -46,6 +46,7 @@ class FreeMotions {
     spread(missed.bodies);
     const std::vector<int> unrestrained = acts ? without_start(is_moving, held, missed.bodies) : found.bodies;
     if (unrestrained.empty()) return;
+    const bool guessed = std::ranges::any_of(unrestrained, [&](int body) { return missed.bodies[at(body)] != 0; });
     found.doubtful = unrestrained.front();
     found.doubt = fmt::format(
         "{} left over with all drivers at rest, and {} {}: add the missing {}guide, joint or driver; what is "
@@ -53,7 +54,7 @@ class FreeMotions {
         found.motions == 1 ? std::string("1 freedom is") : fmt::format("{} freedoms are", found.motions),
         acts ? "no start is given for" : "nothing acts on", names_of(unrestrained), acts ? "" : "gravity, force, ",
         !acts ? "speed under 'initial', if only 0"
-        : missed.frame.empty()
+        : !guessed
             ? "under 'initial', or a 'pose' with its angle"
             : fmt::format("under 'initial' (a 'pose' counts as a guess while nothing stands on {})", missed.frame));
   }
